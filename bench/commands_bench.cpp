@@ -161,8 +161,8 @@ int main(int argc, char** argv) {
   using namespace prostm::bench;
   CLI::App app("Whole commands on large input: time from program start to end");
   Options options;
-  app.add_option("--program", options.program, "the prostm that is measured");
-  app.add_option("--against", options.against, "another prostm, measured in turns");
+  app.add_option("--program", options.program, "path of the prostm to measure");
+  app.add_option("--against", options.against, "path of another prostm, measured in turn");
   app.add_option("--rounds", options.rounds, "runs of each command")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();

@@ -93,8 +93,8 @@ void measure_fill(Method method, const MakePlan& make, Distribution& without, Di
   }
 }
 
-/// Measures what the chain to a device takes for a sample of 4 focal points [ns], from the time of
-/// blocks: the emission alone, with a limiter that knows no array, and with the whole limiter.
+/// Measures the time of the chain to a device per sample of 4 focal points [ns], from the time of
+/// blocks: the emission alone, with a limiter that knows no array, and with the full limiter.
 void add_limiter_rows(std::vector<Row>& rows) {
   const auto levels = std::make_shared<const SafetyLevels>(usx_array(), Medium{}, 0.5);
   SafetySettings low;
@@ -137,8 +137,8 @@ void add_limiter_rows(std::vector<Row>& rows) {
   rows.push_back({"table of levels, usx", "ms", made.summary(), "", 0.0});
 }
 
-/// Measures what the slots of AUTD3 cost for a sample of 4 moving focal points [us], which lasts
-/// 150 us; in turns with the memory of transducers, and without any as at 1 Hz.
+/// Measures the time for AUTD3's slots per sample of 4 moving focal points [us], which lasts 150
+/// us; in turn with transducers with memory, and without memory as at 1 Hz.
 void add_slot_rows(std::vector<Row>& rows) {
   constexpr double kSlotRate = 40e3 / 6.0;  // [Hz]
   const std::array units{autd3_middle()};
@@ -165,7 +165,7 @@ void add_slot_rows(std::vector<Row>& rows) {
   rows.push_back({"slots of AUTD3, no memory", "us", without_memory.summary(), "", 0.0});
 }
 
-/// Streams for ten seconds in real time, 25 plans a second, beside `busy` threads that never sleep.
+/// Streams for ten seconds in real time, 25 plans a second, with `busy` threads that never sleep.
 DeviceStats stream(unsigned busy) {
   std::atomic<bool> done{false};
   std::vector<std::jthread> load;
@@ -194,7 +194,7 @@ DeviceStats stream(unsigned busy) {
 void add_fill_rows(std::vector<Row>& rows) {
   Distribution steady, with_plan, foci;  // [µs]
   measure_fill(Method::ProStm, make_plan, steady, with_plan);
-  // a new plan's foci are taken over in whichever block has a zero of the envelope
+  // a new plan takes over in whichever block has a zero of the envelope
   measure_fill(Method::Am, make_foci, foci, foci);
   rows.push_back({"fill", "us", steady.summary(), "", 0.0});
   rows.push_back({"fill with a new plan", "us", with_plan.summary(), "", 0.0});

@@ -1,5 +1,5 @@
-/// Time that a plan takes more when pressures, or points too, are chosen by what is felt; and of
-/// one evaluation of what is felt, beside plain loops.
+/// Additional time of a plan whose pressures, or points too, are chosen by the percept; and the
+/// time of one evaluation of the percept, compared with plain loops.
 
 #include <fmt/core.h>
 
@@ -53,7 +53,7 @@ void measure_plans(int frames, bool warm, bool points, std::vector<Row>& rows) {
     for (int frame = 0; frame < frames; ++frame) {
       const TargetField field = fields::make(pattern, frame);
       const double without = plain.plan(field), with = felt.plan(field);
-      // the first plan also makes the tables, which are kept
+      // the first plan also makes the tables, which are reused
       if (frame == 0) continue;
       plain_times.add(without);
       more.add(with - without);
@@ -101,7 +101,7 @@ struct Evaluated {
   std::vector<Real> pressure, gradient;
 };
 
-/// Time to read so many bytes from the cache as numbers that are added up [ms]: an evaluation reads
+/// Time to read this many bytes from the cache and add them up as numbers [ms]: an evaluation reads
 /// its pairs twice.
 Distribution reading(std::size_t bytes) {
   const Eigen::VectorXf numbers =
@@ -140,7 +140,7 @@ void measure_evaluations(std::vector<Row>& rows) {
 
 int main(int argc, char** argv) {
   using namespace prostm::bench;
-  CLI::App app("the time that choosing pressures by what is felt takes");
+  CLI::App app("additional time for choosing pressures by the percept");
   int frames = 25;
   app.add_option("--frames", frames, "frames of each generated sequence")
       ->check(CLI::Range(2, 100))

@@ -132,7 +132,7 @@ Summary accuracy(const FluidSettings& settings, const std::string& scene) {
   return errors.summary();
 }
 
-/// Steps of one solver among the moving hand.
+/// Steps of the fluid with one solver and the moving hand.
 class TimedFluid {
  public:
   TimedFluid(const FluidSettings& settings, prostm::WorkerPool& pool)
@@ -161,8 +161,8 @@ class TimedFluid {
   Summary away() const { return away_.summary(); }  // the same away from hands, jets and sides
 
  private:
-  /// Where tools/compare_mantaflow.py looks: above a seventh of the height, and some cells from the
-  /// hand's heights, the sides and the top.
+  /// Largest divergence in the region of tools/compare_mantaflow.py: above a seventh of the height,
+  /// and some cells away from the hand's heights, the sides and the top.
   double divergence_away() const {
     constexpr int kSides = 4, kHand = 5;
     const int n = fluid_.grid().nx;

@@ -48,7 +48,7 @@ std::vector<Row> measure_all(const Options& options) {
   std::vector<Contender> contenders = bench::contenders();
   std::vector<SequenceOutcome> outcomes;
   for (std::size_t s = 0; s < sequences.size(); ++s) {
-    // three patterns further, so that the field is of another kind
+    // three patterns further on, so that the field is of another kind
     const TargetField other = generated[(s + 3) % generated.size()].field(1);
     outcomes.push_back(measure(sequences[s], other, contenders, options.quality));
     print(outcomes.back());

@@ -1,5 +1,5 @@
-/// Cost of viewing: a run in real time without a page, with one page, and with five of which one
-/// stops reading; and the time that the pipeline's own threads spend on handing data over.
+/// Cost of viewing: a run in real time without a page, with one page, and with five, one of which
+/// stops reading; and the time that the pipeline's own threads spend on passing data on.
 ///
 /// usage: view_bench [--json FILE] [--seconds S] [--scene S]
 
@@ -158,7 +158,7 @@ RunSummary measure_alone(const Options& given) {
   return summary;
 }
 
-/// Measures the time that the pipeline's threads spend on handing data over, per call [µs].
+/// Measures the time that the pipeline's threads spend on passing data on, per call [µs].
 void measure_hand_off(const Options& given, Distribution& step, Distribution& smoke,
                       Distribution& plan) {
   constexpr int kSteps = 400;

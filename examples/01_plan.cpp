@@ -21,7 +21,7 @@ int main() {
 
   std::printf("%zu paths\n", plan.paths.size());
   for (const prostm::FocalPath& path : plan.paths) {
-    std::printf("  %zu points, %.0f mm round, a lap takes %.1f ms\n", path.points.size(),
+    std::printf("  %zu points, %.0f mm long, %.1f ms per lap\n", path.points.size(),
                 1e3 * path.length, 1e3 * path.period);
   }
 }

@@ -38,7 +38,7 @@ int main() {
   prostm::Plan other;
   planner.plan(weighted, other, stats);
   const prostm::GainLaw gain = settings.gain_law();
-  std::printf("weighted rmse %.4f, of a plan that knows the weights %.4f\n",
+  std::printf("weighted rmse %.4f, %.4f when planned with the weights\n",
               prostm::weighted_rmse(weighted, plan, 0, sigma, gain),
               prostm::weighted_rmse(weighted, other, 0, sigma, gain));
 }

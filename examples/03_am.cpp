@@ -1,4 +1,5 @@
-// Renders one field by moving focal points (PRO-STM) and by still ones (amplitude modulation).
+// Renders one field with moving focal points (PRO-STM) and with stationary ones (amplitude
+// modulation).
 #include <cstdio>
 #include <prostm/am/am_planner.hpp>
 #include <prostm/plan/planner.hpp>

@@ -1,4 +1,4 @@
-// Samples a plan as an array plays it: 40000 samples a second of every focal point.
+// Converts a plan to the samples that an array plays: 40000 a second for every focal point.
 #include <algorithm>
 #include <cstdio>
 #include <prostm/emit/loop_samples.hpp>

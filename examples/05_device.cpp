@@ -6,13 +6,13 @@
 
 using namespace prostm;
 
-/// Takes 20 ms of samples at a time, 4000 a second, with one intensity for all focal points.
+/// Takes blocks of 20 ms at 4000 samples a second, with one intensity for all focal points.
 class PrintedArray final : public Device {
  public:
   PrintedArray() {
     info_ = {.name = "printed", .sample_rate = 4e3, .block_samples = 80, .max_foci = 4};
     info_.loads_segments = true;
-    info_.keeps_time = false;  // it plays when pull() says so
+    info_.keeps_time = false;  // it plays when pull() is called
     info_.decimation = 10;     // from the 40000 samples a second of an emitter
   }
   DeviceStatus load_segment(std::span<const FocusSample> samples, int foci) override {
@@ -49,10 +49,10 @@ int main() {
   lift(plan, frame, emitter->draft());
   emitter->submit();
 
-  // caps on the levels of the array, for a head half a metre away
+  // data for the caps on the output of the array, for a head half a metre away
   const auto levels = std::make_shared<const SafetyLevels>(usx_array(), Medium{}, 0.5);
   const auto chain = make_sample_chain(*emitter, device->info(), {.levels = levels});
   device->start(*chain);  // loads the first 20 ms
-  device->pull(5);        // plays them and four more; then 100 ms have passed without a new plan
+  device->pull(5);        // plays these and four more blocks: 100 ms without a new plan
   device->stop();
 }

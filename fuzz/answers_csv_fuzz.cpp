@@ -1,4 +1,4 @@
-/// Answers of a study: any bytes are answers with names, whose tidy table has the same answers and
+/// Answers of a study: any bytes give named answers, whose tidy table has the same answers and
 /// whose analysis is finite, or an error.
 #include <cmath>
 #include <cstdint>
@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       participants.insert(a.participant);
     }
     if (answers_from_csv(tidy_csv(answers), "tidy.csv") != answers) std::abort();
-    constexpr std::size_t kFew = 8;  // more have too many splits for a fuzzer
+    constexpr std::size_t kFew = 8;  // more participants have too many splits for a fuzzer
     if (participants.size() > kFew) return 0;
     const Analysis analysis = analyse(answers);
     for (const ThresholdResult& of : analysis.thresholds) {

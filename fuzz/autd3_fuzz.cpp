@@ -12,7 +12,7 @@
 
 namespace {
 
-/// Reads a reply as it comes in, byte by byte as far as the reader asks.
+/// Reads a reply as it arrives, as many bytes at a time as the reader requests.
 void read_all(std::span<const std::uint8_t> bytes, prostm::autd3::Request request,
               std::size_t units) {
   using prostm::autd3::Reply;

@@ -1,4 +1,4 @@
-/// prostm-foci/1: any text is a set of focal points that drives of at most 1 produce, or an error.
+/// prostm-foci/1: any text gives focal points that drives of at most 1 can produce, or an error.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const InputError&) {
     // the required answer to bad input
   } catch (const std::invalid_argument&) {
-    // and to impossible focal points
+    // the required answer to impossible focal points
   }
   return 0;
 }

@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Protocol protocol =
         protocol_from_toml({reinterpret_cast<const char*>(data), size}, "fuzz.toml", base);
     static_cast<void>(protocol_json(protocol).size());
-    constexpr int kFew = 50;  // more take too long for a fuzzer
+    constexpr int kFew = 50;  // more participants take too long for a fuzzer
     if (protocol.trials.repeats > kFew || protocol.methods.size() > 5) return 0;
     if (protocol.level.tracks * static_cast<int>(protocol.scenes.size()) <= kFew) {
       Course course(protocol, 3);

@@ -62,7 +62,7 @@ prostm::RecordedPlan any_plan(std::string_view& bytes) {
   return made;
 }
 
-/// Makes a result with any numbers, also of a problem that there is not.
+/// Makes a result with any numbers, also with a problem that does not exist.
 std::optional<prostm::GateResult> any_gate(std::string_view& bytes) {
   if (take<std::uint8_t>(bytes) % 2 == 0) return {};
   prostm::GateResult said;

@@ -1,5 +1,5 @@
-/// A participant's file: any text is whole lines, of which the answers have names, or gives an
-/// InputError. Whatever follows the last whole line is handed back.
+/// A participant's file: any text gives whole lines, whose answers have names, or an InputError.
+/// The rest after the last whole line is returned.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

@@ -1,5 +1,5 @@
-/// How well plans are felt: ways to plan, judged by the array's own field and the skin's waves, on
-/// sets of fields that are kept apart. Nobody has felt any of this.
+/// Quality of percepts: ways to plan, judged by the array's own field and the skin's waves, on
+/// separate sets of fields. Nobody has felt any of this.
 
 #include <array>
 #include <chrono>
@@ -17,7 +17,7 @@ namespace {
 using namespace prostm;
 using namespace prostm::bench;
 
-/// Keeps those that are named, in their own order; all if no name is given.
+/// Keeps the named ones, in their original order; all if no name is given.
 template <class Named>
 void keep_only(std::vector<Named>& all, const std::vector<std::string>& names, const char* what) {
   if (names.empty()) return;
@@ -65,23 +65,23 @@ int main(int argc, char** argv) {
   bool each = false, quick = false, live = false;
   app.add_option("--set", sets, "sets of fields: tuning, gallery, scout, plumes, new")
       ->capture_default_str();
-  app.add_option("--ways", only_ways, "only these ways; the first is compared with");
+  app.add_option("--ways", only_ways, "only these ways; the others are compared with the first");
   app.add_option("--skins", only_skins, "only these skins; the first has all readouts");
   app.add_option("--disturbances", only_disturbances, "only these disturbances");
   app.add_flag("--live", live,
-               "plans that take over every 40 ms, felt in time, in place of the sets");
+               "plans that replace one another every 40 ms, felt in time, instead of the sets");
   app.add_flag("--quick", quick, "only the first skin, and no disturbance");
-  app.add_option("--fields", most, "so many fields of each set; 0: all")
+  app.add_option("--fields", most, "number of fields of each set; 0: all")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  app.add_option("--threads", threads, "fields that are judged at once")
+  app.add_option("--threads", threads, "number of fields that are judged at once")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   app.add_flag("--each", each, "print every field, too");
   app.add_option("--keep", keep,
                  "keep judgements of plans in this file, and use those in it; remove it when "
                  "emission, acoustics or skin have changed");
-  app.add_option("--figure", figure, "draw fields of the last set, and what is felt of them");
+  app.add_option("--figure", figure, "draw fields of the last set, and their percepts");
   return bench::run(app, argc, argv, [&] {
     if (!figure.empty()) check_figure(figure);
     const TransducerArray array = usx_array();
@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
     keep_only(all_skins, only_skins, "skin");
     keep_only(disturbances, only_disturbances, "disturbance");
     if (all_ways[0].is_control)
-      throw InputError("the first way is compared with, so it must not be a control");
+      throw InputError("the first way is the reference, so it must not be a control");
     if (live) return live_rows(array, all_ways, most, threads, each);
     if (quick) {
       all_skins.resize(1);

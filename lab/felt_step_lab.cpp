@@ -1,4 +1,4 @@
-/// The numbers of the felt step without a derivation: each halved and doubled.
+/// The empirical numbers of the felt step, each halved and doubled.
 
 #include "felt_step/tuning.hpp"
 #include "program.hpp"
@@ -7,10 +7,10 @@ int main(int argc, char** argv) {
   using namespace prostm;
   CLI::App app("the numbers of the felt step, each halved and doubled");
   int fields = 96, fields_with_points = 12;
-  app.add_option("--fields", fields, "fields whose pressures are chosen")
+  app.add_option("--fields", fields, "number of fields whose pressures are chosen")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
-  app.add_option("--point-fields", fields_with_points, "fields on which points move, too")
+  app.add_option("--point-fields", fields_with_points, "number of fields on which points move, too")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   return bench::run(app, argc, argv, [&] {

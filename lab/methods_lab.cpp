@@ -1,4 +1,5 @@
-/// Ways to render a target, played by the array and felt by the skin, under three controls.
+/// Compares ways to render a target, played by the array and felt by the skin, under three
+/// controls.
 
 #include "methods/tables.hpp"
 #include "program.hpp"

@@ -1,4 +1,4 @@
-/// Measures what the scenes press on held hands, beside the numbers of the paper's Fig. 3.
+/// Measures the scenes' pressure on held hands, for comparison with the paper's Fig. 3.
 
 #include "plumes/plumes.hpp"
 #include "plumes/refinement.hpp"
@@ -6,7 +6,7 @@
 
 int main(int argc, char** argv) {
   using namespace prostm;
-  CLI::App app("what the scenes press on held hands");
+  CLI::App app("the scenes' pressure on held hands");
   std::string folder, only, curves;
   std::vector<std::string> scenes = {"four-plumes", "one-plume", "two-plumes", "three-plumes"};
   std::vector<int> cells = {64};
@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
   int frames = 250;
   double trim = JetSettings().trim_rate, tremor = 4.0;
   app.add_option("--hands", folder, "folder with recorded hands");
-  app.add_option("--tremor-above", tremor, "they tremble as recorded above so many Hz; 0: still")
+  app.add_option("--tremor-above", tremor,
+                 "use the recorded tremor above this frequency [Hz]; 0: none")
       ->check(CLI::Range(0.0, 50.0))
       ->capture_default_str();
   app.add_option("--only", only, "cases whose name contains this");
@@ -28,9 +29,9 @@ int main(int argc, char** argv) {
   app.add_option("--width", width, "edge of the box [mm]")->capture_default_str();
   app.add_option("--theta", theta, "weight of the pressure at the end of a path")
       ->capture_default_str();
-  app.add_option("--substeps", substeps, "steps of the fluid in a step")->capture_default_str();
+  app.add_option("--substeps", substeps, "fluid steps per step")->capture_default_str();
   app.add_option("--follow", follow, "what the box follows: palm or index");
-  app.add_option("--pressure-of", part, "what is felt: all, smoke or movement")
+  app.add_option("--pressure-of", part, "pressure to use: all, smoke or movement")
       ->capture_default_str();
   app.add_option("--trim", trim, "rate of the jets' trim [1/s]")->capture_default_str();
   app.add_option("--frames", frames, "frames of each case")

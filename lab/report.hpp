@@ -20,7 +20,7 @@ namespace prostm::bench {
 struct Row {
   std::string name, unit;
   Summary ours;
-  std::string baseline;       ///< empty if nothing is compared
+  std::string baseline;       ///< empty without a comparison
   double baseline_p50 = 0.0;  ///< in `unit`
 };
 

@@ -36,7 +36,7 @@ Numbers numbers(py::handle value, const std::string& name, int dimensions, std::
                                 std::to_string(dimensions) + " dimension" +
                                 (dimensions == 1 ? "" : "s"));
   }
-  // before they are copied: an array that is broadcast may be larger than any memory
+  // checked before copying: a broadcast array may be larger than the memory
   if (static_cast<std::size_t>(given.size()) > most) {
     throw std::invalid_argument(name + " has the shape " + shape_text(given) +
                                 "; it must have at most " + std::to_string(most) + " numbers");
@@ -78,7 +78,8 @@ Pose pose_from(py::handle matrix, const std::string& name) {
   const Numbers given = numbers(matrix, name, std::vector<py::ssize_t>{4, 4});
   const auto m = given.unchecked<2>();
   if (m(3, 0) != 0.0 || m(3, 1) != 0.0 || m(3, 2) != 0.0 || m(3, 3) != 1.0) {
-    throw std::invalid_argument(name + " is no pose: the last row of its matrix must be 0 0 0 1");
+    throw std::invalid_argument(name +
+                                " is not a pose: the last row of its matrix must be 0 0 0 1");
   }
   Pose pose = Pose::Identity();
   for (int row = 0; row < 3; ++row) {

@@ -15,7 +15,7 @@
 namespace prostm::python {
 namespace {
 
-constexpr int kMostSamples = 100'000'000;  // of one call: 16 bytes for each and every focal point
+constexpr int kMostSamples = 100'000'000;  // in one call; each takes 16 bytes per focal point
 
 void check_patches(const Plan& plan, std::size_t patches) {
   const auto check = [patches](const char* what, int patch) {
@@ -212,7 +212,7 @@ void bind_emitter(py::module_& m) {
       .field("faded", &EmitStats::faded, "Samples in a fade of a transition.")
       .field("laps_started", &EmitStats::laps_started, "Laps that began.")
       .field("laps_cut", &EmitStats::laps_cut, "Laps that were cut short.")
-      .field("stalls", &EmitStats::stalls, "Fade-outs because no plan came.")
+      .field("stalls", &EmitStats::stalls, "Fade-outs because no plan arrived.")
       .field("refused_plans", &EmitStats::refused_plans,
              "Plans with a number that is not finite or out of bounds.")
       .field("dropped_paths", &EmitStats::dropped_paths,
@@ -233,8 +233,9 @@ void bind_emitter(py::module_& m) {
       m, "Emitter",
       "Turns plans into samples of focal points: a PathEmitter or a FocusEmitter.\n\n"
       "While its intensity is above 1 % a focal point moves at most 8 m/s, intensities change by\n"
-      "at most 1/40 per sample and the sum of their squares stays within power_limit. A plan that\n"
-      "no other follows fades out after stall_time.")
+      "at most 1/40 per sample and the sum of their squares stays within power_limit. Output "
+      "fades\n"
+      "out if no new plan arrives within stall_time.")
       .def("submit", &submit,
            "Hands over a LiftedPlan, which is copied; it replaces a plan that no fill() has "
            "fetched.",
@@ -324,8 +325,9 @@ void bind_emit(py::module_& m) {
         require_between("power_limit", power_limit, 1e-6, double{kMaxPaths});
         return even_share(paths, power_limit);
       },
-      "min(1, power_limit / paths): the share of full scale's radiation pressure that each of so\n"
-      "many focal points may have when all want the same.",
+      "min(1, power_limit / paths): the share of full scale's radiation pressure that each of "
+      "this\n"
+      "many focal points may have if all request the same.",
       py::arg("paths"), py::arg("power_limit") = EmitSettings{}.power_limit);
 }
 

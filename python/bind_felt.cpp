@@ -30,7 +30,7 @@ void bind_skin(py::module_& m) {
   py::class_<SkinSettings>(
       m, "SkinSettings",
       "Properties of the skin in its model (docs/design/skin.md), a soft half-space.\n"
-      "They do not change once they are made.")
+      "Immutable.")
       .def(py::init(&make_skin),
            "slow_speed: of surface waves towards 0 Hz [m/s], 0.5 to 50. fast_speed: their plateau\n"
            "at high frequencies [m/s], slow_speed to 50. loss: tan delta of the tissue's shear\n"
@@ -106,15 +106,15 @@ py::array percept_of(const FeltPlan& felt) {
 void bind_felt_plan(py::module_& m) {
   py::class_<FeltPlan>(
       m, "FeltPlan",
-      "The percept of a plan in step by the planner's model of the skin, and the gradient of\n"
-      "how badly that renders the target. Nobody has felt it.")
+      "The percept of a plan in step by the planner's model of the skin, and the gradient of its\n"
+      "lack of quality. Nobody has felt it.")
       .def_readonly("lack", &FeltPlan::lack,
                     "Mean over the skins of 1 - skill_8 + 0.3 (1 - skill_0) of the percept, (W3);\n"
                     "0 is perfect.")
       .def_property_readonly(
           "positions",
           [](const py::object& self) { return view_of_blocks(self, &FeltBlock::position, {2}); },
-          "(n, 2) mean places of the n blocks of the target's skin that the model looks at, in\n"
+          "(n, 2) mean places of the n blocks of the target's skin that the model evaluates, in\n"
           "the plane [m]; a view.")
       .def_property_readonly(
           "area", [](const py::object& self) { return view_of_blocks(self, &FeltBlock::area, {}); },
@@ -162,10 +162,11 @@ void bind_felt(py::module_& m) {
         const py::gil_scoped_release unlocked;
         return felt_plan(plan, target, sigma, skins ? *skins : felt_skins());
       },
-      "The planner's own model of what is felt of a plan in step, in double precision: to\n"
-      "choose pressures or points of your own. The skin is taken as flat.\n\n"
-      "plan: a Plan of paths with a loop, as those that are planned with felt_weight: from its\n"
-      "first point on, each path is gone round loop / period times in a loop, rounded. target:\n"
+      "The planner's own model of the percept of a plan in step, in double precision: to choose\n"
+      "pressures or points of your own. The skin is assumed to be flat.\n\n"
+      "plan: a Plan of paths with a loop, like those planned with felt_weight: each path starts "
+      "at\n"
+      "its first point and makes loop / period laps in a loop, rounded. target:\n"
       "the TargetField that it renders. sigma: fall-off of a focal point [m], 1e-3 to 50e-3.\n"
       "skins: a list of SkinSettings; None: felt_skins().\n\n"
       "Returns a FeltPlan. Raises ValueError for a plan that is not in step, has no path, a\n"

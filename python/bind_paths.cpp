@@ -194,7 +194,7 @@ void bind_classes(py::module_& m) {
           "paths: FocalPaths, or foci: FocalPoints, which are copied. loop: of paths in step, the\n"
           "period in which all come round together [s], 1 ms to 1 s; each then makes whole laps "
           "in\n"
-          "it, as many as its speed says. 0: each goes round on its own.",
+          "it, as many as follow from its speed. 0: each has a period of its own.",
           py::arg("paths") = py::list(), py::arg("foci") = py::list(), py::arg("loop") = 0.0)
       .def_property_readonly("paths", &paths_of, "The FocalPaths, as a new list.")
       .def_property_readonly("foci", &foci_of, "The FocalPoints, as a new list.")

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kDefaultCells = 128 * 128;
 
-/// A planner and the lock that lets several Python threads share it, one after the other.
+/// A planner, and a lock so that several Python threads can share it, one at a time.
 template <class P>
 struct SharedPlanner {
   template <class S>
@@ -126,9 +126,9 @@ void bind_planner(py::module_& m) {
             const std::lock_guard lock(self.mutex);
             self.planner.reset();
           },
-          "Forgets the plan before, which the presets best and fast continue from.")
+          "Forgets the previous plan, from which the presets best and fast continue.")
       .def("plan", &plan_paths,
-           "Plans a TargetField, a TargetFrame (the paths are shared out between its patches, and\n"
+           "Plans a TargetField, a TargetFrame (the paths are distributed over its patches, and\n"
            "no path spans two), or the file of a field, given by its name, with cell_mm,\n"
            "width_mm, frame and invert as of read_field(). trace=True keeps the intermediate\n"
            "results of a field.\n\n"
@@ -159,7 +159,7 @@ void bind_am_planner(py::module_& m) {
           "A copy of the settings.")
       .def_readonly("max_cells", &SharedPlanner<AmPlanner>::max_cells, "The largest raster.")
       .def("plan", &plan_foci,
-           "Plans a TargetField, a TargetFrame (the foci are shared out between its patches), or\n"
+           "Plans a TargetField, a TargetFrame (the foci are distributed over its patches), or\n"
            "the file of a field, given by its name as for Planner.plan().\n\n"
            "Returns a PlanResult. A field without pressure gives a plan without foci. Raises\n"
            "ValueError as Planner.plan() does.",
@@ -168,7 +168,7 @@ void bind_am_planner(py::module_& m) {
            py::arg("invert") = false);
 }
 
-// ---- what came out
+// ---- results
 
 py::array points_array(const std::vector<Vec2>& points) {
   py::array_t<double> array({static_cast<py::ssize_t>(points.size()), py::ssize_t{2}});

@@ -29,7 +29,7 @@ class Recording {
     }
   }
   ~Recording() {
-    // an interpreter that shuts down has no other threads, and no modules to ask
+    // an interpreter that is shutting down has no other threads and no modules
     if (_Py_IsFinalizing() != 0) return;
     const Hdf5Turn turn;
     reader_.reset();
@@ -107,7 +107,7 @@ void bind_recording(py::module_& m) {
   py::class_<Recording>(
       m, "Recording",
       "A recording of `prostm run --record` or `prostm capture`: targets and plans by frame.\n\n"
-      "Frames are read when they are asked for, and the file stays open while the object lives.\n"
+      "Frames are read on request, and the file stays open while the object lives.\n"
       "It may be open in h5py at the same time.")
       .def(py::init<const std::filesystem::path&>(),
            "path: name of the .h5 file. Raises InputError, a ValueError, that names the file.",
@@ -139,8 +139,8 @@ void bind_recording(py::module_& m) {
            "with. Raises InputError for a frame that does not exist.",
            py::arg("frame"))
       .def("gate", &Recording::gate,
-           "The GateResult of a frame; None where nothing was asked of its target, and in\n"
-           "recordings of earlier versions. Raises InputError for a frame that does not exist.",
+           "The GateResult of a frame; None if the gate did not check it, and in recordings of\n"
+           "earlier versions. Raises InputError for a frame that does not exist.",
            py::arg("frame"))
       .def("__repr__", [](const Recording& self) {
         return "Recording(" + std::to_string(self.reader().frames()) + " frames)";

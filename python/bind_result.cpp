@@ -93,7 +93,7 @@ double PlanResult::sigma(int patch) const {
 
 GainLaw PlanResult::gain_law() const {
   const auto* of_paths = std::get_if<PlanSettings>(&settings);
-  return of_paths != nullptr ? of_paths->gain_law() : GainLaw{};  // foci have no γ
+  return of_paths != nullptr ? of_paths->gain_law() : GainLaw{};  // AM has no γ
 }
 
 const TargetField& PlanResult::patch(int index) const {
@@ -148,7 +148,7 @@ void bind_result(py::module_& m) {
       .def_property_readonly(
           "emission", [](const PlanResult& r) { return r.emission(nullptr); },
           "EmitSettings that play the plan, as a copy: the defaults with a full scale of the gain\n"
-          "times the target's largest pressure, or those of the recording that it was read from.")
+          "times the target's largest pressure, or those of the recording that contains the plan.")
       .def(
           "metrics", &metrics_of,
           "Metrics of the field that is played, with the planner's sigma and gain.\n\n"

@@ -70,7 +70,7 @@ void bind_score(py::module_& m) {
         "unit. coverage is passed through.",
         py::arg("target"), py::arg("rendered"), py::arg("coverage") = 0.0);
   m.def("controls", &controls_of,
-        "The controls of a plan on a target, which must lose to it, as a list of Control; empty\n"
+        "The controls that a plan on a target must outperform, as a list of Control; empty\n"
         "for a target without pressure: a flat field; four circles at the mass centres; random\n"
         "circles with solved pressures (the median of 20 draws); and, when `other` is given, the\n"
         "paths of that Plan moved here. sigma and length (of a circle, drawn draw_rate times a\n"

@@ -28,7 +28,7 @@ FieldShape shape_of(const TargetField& field) {
 
 void bind_shape(py::module_& m) {
   py::class_<FieldShape> shape(m, "FieldShape",
-                               "The shape of a field to somebody who feels for its maxima.");
+                               "The shape of a field: the maxima that a hand can find in it.");
   shape
       .def_property_readonly(
           "maxima", &maxima_of,
@@ -56,8 +56,8 @@ void bind_shape(py::module_& m) {
       py::arg("field"));
 
   py::class_<GateResult>(m, "GateResult",
-                         "What the gate of a study said of a frame: whether a held hand got the\n"
-                         "pressure that its scene is meant to make (docs/design/scenes.md).")
+                         "Result of a study's gate for a frame: whether the hand is held well and\n"
+                         "gets the pressure intended by its scene (docs/design/scenes.md).")
       .def_readonly("passed", &GateResult::pass,
                     "Whether the hand is held well, and 0.8 of the last second's frames are good.")
       .def_readonly("share", &GateResult::share,
@@ -68,7 +68,7 @@ void bind_shape(py::module_& m) {
           "Name of this frame's first problem; \"none\" without one.")
       .def_property_readonly(
           "sentence", [](const GateResult& self) { return sentence(self); },
-          "A sentence that says what to do, or what was found.")
+          "A sentence with an instruction, or the result.")
       .def_readonly("shape", &GateResult::shape, "FieldShape of the first hand's target.")
       .def("__repr__", [](const GateResult& self) {
         return "GateResult(" + std::string(self.pass ? "passed" : "not passed") + ": " +

@@ -91,7 +91,7 @@ TargetField make_field(const py::object& pressure, std::optional<double> cell,
   }
   TargetField field;
   set_shape(field, p);
-  // a file's millimetres become metres by the same division
+  // the same division as for the millimetres of a file, so that both agree to the bit
   field.cell = cell ? *cell : *cell_mm / 1000.0;
   const Numbers corner = numbers(origin, "origin", std::vector<py::ssize_t>{2});
   field.origin = Vec2(corner.data()[0], corner.data()[1]);
@@ -194,14 +194,16 @@ void bind_field(py::module_& m) {
           "None: 1 everywhere.")
       .def_property_readonly(
           "smoke", [](const py::object& self) { return optional_view(self, &TargetField::smoke); },
-          "(rows, cols) part of the air's pressure that is the smoke's, of either sign, 0 where "
-          "there is no skin; a view. None: not known apart, as in a field that was not recorded "
-          "with [contact] parts.")
+          "(rows, cols) part of the air's pressure that is due to the smoke, of either sign, 0 "
+          "where "
+          "there is no skin; a view. None: unknown, as in a field that was not recorded with "
+          "[contact] parts.")
       .def_property_readonly(
           "movement",
           [](const py::object& self) { return optional_view(self, &TargetField::movement); },
-          "(rows, cols) part of the air's pressure that is of the hand's own movement, of either "
-          "sign, 0 where there is no skin; a view. None: not known apart.")
+          "(rows, cols) part of the air's pressure that is due to the hand's own movement, of "
+          "either "
+          "sign, 0 where there is no skin; a view. None: unknown.")
       .def_property_readonly(
           "X_DP", [](const TargetField& f) { return pose_matrix(f.X_DP); },
           "(4, 4) pose of the plane in the device's frame [m]; a copy.")

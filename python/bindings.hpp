@@ -34,7 +34,7 @@ void bind_io(py::module_& m);
 void bind_shape(py::module_& m);
 void bind_recording(py::module_& m);
 
-/// Names a value in a message: "None", "3", "'palm'", else its type, "an array".
+/// Describes a value in a message: "None", "3", "'palm'", else its type, "an array".
 std::string described(py::handle value);
 
 /// Returns the patches of a TargetField or a TargetFrame. @throws py::type_error for anything else.
@@ -42,7 +42,7 @@ std::vector<const TargetField*> patches_of(py::handle target);
 /// Largest pressure of a TargetField or a TargetFrame; 0 without skin.
 double largest_pressure(py::handle target);
 
-/// Returns how a field's file is read, with the names that Python has for it.
+/// Returns the options for reading a field's file, under their Python names.
 FieldFileOptions file_options(std::optional<double> cell_mm, std::optional<double> width_mm,
                               std::optional<int> frame, bool invert);
 /// Reads the field if a target is given by the name of a file; returns other targets as they are.
@@ -82,7 +82,7 @@ class Record {
     names_.append(name);
     return *this;
   }
-  /// Adds every number of the list of S, in SI.
+  /// Adds all quantities of S, in SI units.
   Record& quantities() {
     for (const Quantity<S>& quantity : prostm::quantities<S>()) {
       class_.def_property_readonly(
@@ -109,7 +109,7 @@ class Record {
           }
           return values;
         },
-        "The fields by name, as a new dictionary, without those that were not asked for (NaN).");
+        "The fields by name, as a new dictionary, without those that were not requested (NaN).");
     class_.def("__repr__", [names](const py::object& self) {
       std::string text = py::str(py::type::of(self).attr("__name__"));
       const char* before = "(";

@@ -5,9 +5,9 @@
 
 namespace prostm::python {
 
-/// While it lives, no other thread is in HDF5, which only one thread at a time may use. The
-/// interpreter's lock keeps out the threads of this module. h5py may use the same library and lets
-/// go of that lock while it reads, so its own lock is held too once it is imported.
+/// While this object exists, no other thread uses HDF5, which is not thread-safe. The interpreter's
+/// lock keeps out the threads of this module. h5py may use the same library and releases that lock
+/// while it reads, so its own lock is held too once it is imported.
 /// @pre the interpreter's lock is held, and stays held.
 class Hdf5Turn {
  public:

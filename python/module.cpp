@@ -1,4 +1,4 @@
-/// The compiled module prostm._prostm, whose names the package prostm shows as its own.
+/// The compiled module prostm._prostm, whose names the package prostm re-exports.
 
 #include "bindings.hpp"
 #include "prostm/commit.hpp"
@@ -9,7 +9,7 @@ PYBIND11_MODULE(_prostm, m) {
   namespace py = pybind11;
   using namespace prostm::python;
 
-  // a class takes its module's name when it is made, and should say prostm.Plan
+  // a class takes its module's name when it is created; it should be prostm.Plan
   const py::object own_name = m.attr("__name__");
   m.attr("__name__") = "prostm";
   prostm::set_lock_warning([](const std::string& sentence) {
@@ -19,9 +19,9 @@ PYBIND11_MODULE(_prostm, m) {
   m.attr("__version__") = PROSTM_VERSION;
   m.attr("__commit__") = std::string(prostm::commit());
   py::register_exception<prostm::InputError>(m, "InputError", PyExc_ValueError).doc() =
-      "An invalid file: one sentence that says what is wrong, where, and what would be right.";
-  m.def("_described", &described, "Names a value in a message.", py::arg("value"));
-  // a signature names the classes that are bound before it
+      "An invalid file. The message is one sentence: the problem, its place, and the remedy.";
+  m.def("_described", &described, "Describes a value in a message.", py::arg("value"));
+  // classes must be bound before the signatures that name them
   bind_target(m);
   bind_paths(m);
   bind_plan(m);

@@ -1,5 +1,5 @@
 #pragma once
-/// A plan and what it was made from: the result of a planner, or a recorded plan.
+/// A plan with its target and settings: the result of a planner, or a recorded plan.
 
 #include <array>
 #include <optional>
@@ -14,12 +14,12 @@
 
 namespace prostm::python {
 
-/// The settings of a planner, which say the method too.
+/// The settings of a planner, whose type also determines the method.
 using AnySettings = std::variant<PlanSettings, AmSettings>;
 
 /// The settings of a plan file, listed as {"plan": …} or {"am": …}.
 struct SettingsInFile {
-  /// @param settings outlive it.
+  /// @param settings must outlive this object.
   explicit SettingsInFile(const AnySettings& settings);
   Method method;
   std::optional<Preset> preset;  ///< empty for AM
@@ -53,7 +53,7 @@ struct PlanResult {
   PlanStats stats;
   std::optional<PlanTrace> trace;
 
-  /// How a recorded plan was played, and the σ that each patch was planned with [m].
+  /// The emission of a recorded plan, and the σ of each patch when it was planned [m].
   struct Recorded {
     EmitSettings emission;
     std::array<double, kMaxPatches> sigma;

@@ -49,7 +49,7 @@ class Documentation : public SettingsReader {
   }
 };
 
-/// Sets the one field of a name.
+/// Sets the field with a given name.
 class Writer : public SettingsWriter {
  public:
   Writer(std::string type, std::string name, py::handle value)
@@ -100,7 +100,7 @@ class Writer : public SettingsWriter {
   bool found = false;
 
  private:
-  /// Python's or numpy's; both pass for the whole numbers 0 and 1 otherwise.
+  /// Whether the value is Python's or numpy's bool, which would otherwise pass as an integer.
   bool is_bool() const {
     return py::isinstance<py::bool_>(value_) ||
            std::string(Py_TYPE(value_.ptr())->tp_name) == "numpy.bool_";

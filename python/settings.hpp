@@ -9,7 +9,7 @@
 
 namespace prostm::python {
 
-/// Messages call the settings by the name of the group, e.g. "PlanSettings".
+/// Sets a setting. Messages name the group, e.g. "PlanSettings".
 /// @throws std::invalid_argument for an unknown name, py::type_error for a value of another type.
 void set_setting(const SettingsGroup& group, const std::string& name, py::handle value);
 void set_settings(const SettingsGroup& group, const py::dict& values);
@@ -33,7 +33,7 @@ void bind_settings(py::module_& m, const std::string& type, const std::string& d
   };
   py::class_<S>(m, type.c_str(), whole.c_str())
       .def(py::init([made](const py::kwargs& values) { return made(values); }),
-           "Every setting is a keyword; what is not given keeps its default.\n\n"
+           "Every setting is a keyword; omitted settings keep their defaults.\n\n"
            "Raises ValueError for a name that is unknown, TypeError for a value of another type.")
       .def("__getattr__",
            [type](S& self, const std::string& name) -> py::object {

@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 ALWAYS = {"pipeline", "viewer", "app"}
 # stages that the tests of several others link
 SHARED = (("src", "prostm", "textbook"), ("src", "prostm", "fields"))
-# what tests of devices run against
+# stand-ins that tests of devices run against
 DEVICE_SUPPORT = (("tests", "support", "standins"), ("tests", "support", "ultraleap_sdk"))
 # files that no sanitizer or fuzzer covers
 ELSEWHERE = ("docs", "web", "bench", "lab", "examples", "python", "README.md", "CHANGELOG.md", "CONTRIBUTING.md",

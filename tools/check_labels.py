@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the labels of equations: each is defined once in docs/design/, and each that is cited is defined.
+"""Checks the labels of equations: each is defined once, in docs/design/, and each cited label is defined.
 
 usage: check_labels.py [ROOT]     ROOT is the repository (default: the folder above this file)
 

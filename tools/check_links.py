@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the links of the documents: that each relative one leads to a file or folder, and its anchor to a heading.
+"""Checks that each relative link in the documents leads to a file or folder, and its anchor to a heading.
 
 usage: check_links.py [ROOT]     ROOT is the repository (default: the folder above this file)
 
@@ -22,7 +22,7 @@ ANCHOR = re.compile(r'<a\s[^>]*\b(?:id|name)="([^"]+)"')
 
 
 def without_fences(text):
-    """The text, in as many lines, without its fenced blocks of code."""
+    """Returns the text with fenced blocks of code blanked out, lines kept."""
     lines, fence = [], None
     for line in text.splitlines():
         mark = re.match(r"\s*(```+|~~~+)", line)
@@ -38,18 +38,18 @@ def without_fences(text):
 
 
 def without_code(text):
-    """The same without code in a line, either; the rest stays where it is."""
+    """Returns the same with inline code blanked out too, columns kept."""
     return re.sub(r"(`+)(?!`)[^\n]*?(?<!`)\1(?!`)", lambda code: " " * len(code[0]), without_fences(text))
 
 
 def slug_of(heading):
-    """The anchor that GitHub gives a heading: in small letters, without punctuation, with - for each space."""
+    """Returns GitHub's anchor of a heading: in small letters, without punctuation, with - for each space."""
     text = re.sub(r"!?\[([^]]*)\]\([^)]*\)", r"\1", heading)
     return re.sub(r"[^\w\- ]", "", text.strip().lower()).replace(" ", "-")
 
 
 def anchors_in(text):
-    """The anchors of a page; a heading that is there again gets -1, -2, …"""
+    """Returns the anchors of a page; a repeated heading gets -1, -2, …"""
     anchors, times = set(ANCHOR.findall(text)), {}
     for line in without_fences(text).splitlines():
         if heading := HEADING.match(line):
@@ -61,7 +61,7 @@ def anchors_in(text):
 
 
 def links_in(text):
-    """(line, target) of each link."""
+    """Returns (line, target) of each link."""
     plain = without_code(text)
     for link in LINK.finditer(plain):
         target = link[1] or link[2] or link[3]
@@ -69,7 +69,7 @@ def links_in(text):
 
 
 def problem_of(target, page, root):
-    """Returns what is wrong with a link of a page, or None."""
+    """Returns the problem of a link of a page, or None."""
     if SCHEME.match(target):
         return None
     path, _, anchor = unquote(target).partition("#")

@@ -1,8 +1,8 @@
 #!/bin/bash
 # Checks documents and the comments of headers with Vale 3 and the rules in tools/vale/prostm.
 # usage: tools/check_prose.sh
-# Vale is $VALE, or `vale` on the PATH, or build/tools/vale. Without it this says so and succeeds: check_words.py applies
-# the same rules in the tests.
+# Vale is $VALE, or `vale` on the PATH, or build/tools/vale. Without it this prints a message and succeeds:
+# check_words.py applies the same rules in the tests.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
 for vale in "${VALE:-vale}" "$PWD/build/tools/vale" ""; do

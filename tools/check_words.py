@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds texts to plain English: lists the places that fall back into the old idiom, and lines of documents that are too
+"""Checks texts for plain English: lists places that break the rules of wording, and lines of documents that are too
 long.
 
 usage: check_words.py FOLDER
@@ -19,7 +19,7 @@ FOLDERS = ("apps", "bench", "cmake", "data", "docs", "examples", "fuzz", "lab", 
            "web/src", "web/tests")
 DOCUMENTS = (".md",)
 SOURCES = (".cpp", ".hpp", ".py", ".pyi", ".sh", ".ts", ".txt", ".cmake", "run")
-# what tests this must name what it forbids
+# this script and its test must contain the forbidden words
 LISTS = ("tools/check_words.py", "tests/tools/test_check_words.py")
 RULES = Path(__file__).resolve().parent / "vale" / "prostm"
 
@@ -30,7 +30,7 @@ COMMENT = re.compile(r"^\s*(?://|#(?!include|pragma|if|endif|else|define))")
 
 
 def openings_in(text):
-    """Comments that open with Of or What."""
+    """Finds comments that open with Of or What."""
     before = ""
     for number, line in enumerate(text.splitlines(), 1):
         first = OPENING.match(line) if not COMMENT.match(before) or '"""' in line else None
@@ -40,7 +40,7 @@ def openings_in(text):
 
 
 def long_lines_in(text):
-    """Lines above LONGEST columns that are neither of a table, nor a link, nor code."""
+    """Finds lines above LONGEST columns that are not part of a table, a link or code."""
     code = False
     for number, line in enumerate(text.splitlines(), 1):
         code ^= line.startswith("```")
@@ -50,7 +50,7 @@ def long_lines_in(text):
 
 
 def texts_in(root):
-    """(name, path) of each file that is written by hand."""
+    """Finds (name, path) of each file that is written by hand."""
     files = [path for path in root.iterdir() if path.is_file()]
     for folder in FOLDERS:
         files += (path for path in (root / folder).rglob("*") if path.is_file())

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tells whether this build is slower than another: runs both in turns, A B A B …, and compares the p50 of every time.
+"""Tests whether this build is slower than another: runs both in turn, A B A B …, and compares the p50 of every time.
 
 usage: compare_benches.py OTHER_BUILD THIS_BUILD [NAME…] [--rounds N] [--bound PERCENT] [--json FILE]
 
@@ -28,7 +28,7 @@ LEAST_ROUNDS = 3
 
 
 class Failed(Exception):
-    """A program failed; the text says which and how."""
+    """A program failed; the text names it and the cause."""
 
 
 def call(*command):

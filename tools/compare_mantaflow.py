@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares a step of the smoke with one of Mantaflow, as Debian's Blender has it (apt-get install blender).
+"""Compares a step of the smoke with one of Mantaflow, as built into Debian's Blender (apt-get install blender).
 
 usage: tools/compare_mantaflow.py [--cells N] [--frames N] [--bench FILE]
 
@@ -103,7 +103,7 @@ def mantaflow(cells, frames):
 
 
 def ours(bench, cells):
-    """Returns the same of prostm's solvers, from its benchmark."""
+    """Returns the same for prostm's solvers, from its benchmark."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "out.json"
         subprocess.run([bench, "--json", out], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)

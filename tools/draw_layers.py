@@ -3,8 +3,8 @@
 
 usage: draw_layers.py [FILE]     FILE is the picture (default: docs/pictures/layers.svg); - for standard output
 
-The stages and links are those of CMakeLists.txt, as check_layers.py reads them. A link that follows from others is left
-out. A stage is drawn one row above the highest that it includes.
+The stages and links are those of CMakeLists.txt, as check_layers.py reads them. A link that follows from others is
+omitted. A stage is drawn one row above the highest that it includes.
 """
 
 import re
@@ -27,7 +27,7 @@ LIBRARY_STAGE = re.compile(r"^prostm_stage\((\w+)", re.M)  # the program's are i
 
 
 def essential(layers):
-    """stage -> the stages it links that none of the others it links brings."""
+    """Returns stage -> the stages that it links, without those that follow from its other links."""
     def is_brought(name, links):
         return any(name in reachable(layers, layers[other]) for other in links if other != name)
     return {stage: [name for name in dict.fromkeys(links) if not is_brought(name, links)]
@@ -35,7 +35,7 @@ def essential(layers):
 
 
 def rows_of(links):
-    """stage -> its row, 0 for the lowest. Stages come after those that they link."""
+    """Returns stage -> its row, 0 for the lowest. Stages come after those that they link."""
     row = {}
     for stage, names in links.items():
         row[stage] = 1 + max((row[name] for name in names), default=-1)
@@ -43,8 +43,8 @@ def rows_of(links):
 
 
 def with_lanes(links, row):
-    """The rows as lists of nodes, the lowest first, and the lines between neighbouring rows, (upper, lower). A line over
-    several rows passes each by a lane, the node (stage, name, row)."""
+    """Returns the rows as lists of nodes, the lowest first, and the lines between neighbouring rows, (upper, lower). A
+    line over several rows crosses each through a lane, the node (stage, name, row)."""
     rows = [[] for _ in range(max(row.values()) + 1)]
     for stage in links:
         rows[row[stage]].append(stage)
@@ -105,7 +105,7 @@ def least_gap(left, right):
 
 
 def places_of(rows, lines):
-    """node -> x of its middle: near the mean of its neighbours, in the order of its row."""
+    """Returns node -> x of its middle: near the mean of its neighbours, in the order of its row."""
     neighbours, x = neighbours_of(lines), {}
     for nodes in rows:
         at = 0.0
@@ -125,7 +125,7 @@ def places_of(rows, lines):
 
 
 def spread(nodes, x):
-    """Moves nodes that are too near to each other apart, as far to the left as to the right."""
+    """Moves nodes apart that are too close to each other, equally to the left and to the right."""
     pushed_right, pushed_left = [x[nodes[0]]], [x[nodes[-1]]]
     for left, node in zip(nodes, nodes[1:]):
         pushed_right.append(max(x[node], pushed_right[-1] + least_gap(left, node)))
@@ -136,7 +136,7 @@ def spread(nodes, x):
 
 
 def ports_of(lines, x, end):
-    """line -> x where it touches its upper (end 0) or lower (end 1) node, in the order of its other ends."""
+    """Returns line -> x where it touches its upper (end 0) or lower (end 1) node, in the order of its other ends."""
     ports = {}
     for node in x:
         own = sorted((line for line in lines if line[end] == node), key=lambda line: x[line[1 - end]])
@@ -145,7 +145,7 @@ def ports_of(lines, x, end):
 
 
 def curve(ports, top, line):
-    """The path of a line from the lower edge of its upper node to the upper edge of its lower one."""
+    """Returns the path of a line from the lower edge of its upper node to the upper edge of its lower one."""
     upper, lower = line
     (x0, y0), (x1, y1) = (ports[0][line], top[upper] + BOX[1]), (ports[1][line], top[lower])
     tip = 0 if isinstance(lower, tuple) else 4

@@ -3,9 +3,9 @@
 
 usage: house.py [ROOT]     ROOT is a checkout of prostm (default: the folder above this file)
 
-Prints one line for each measure. A module is a header with the sources of its name. An arrow back is an #include between
-modules of one stage that closes a cycle. Exits 1 if a folder of src/, apps/, tests/ or docs/ has more than 25 files,
-pictures aside, or if device, plan or study has an arrow back.
+Prints one line for each measure. A module is a header with the sources of its name. An arrow back is an #include
+between modules of one stage that closes a cycle. Exits 1 if a folder of src/, apps/, tests/ or docs/ has more than 25
+files, not counting pictures, or if device, plan or study has an arrow back.
 """
 
 import re
@@ -31,7 +31,7 @@ def tracked(root):
 
 
 def files_in_folders(files):
-    """Returns folder -> number of files directly in it, pictures aside."""
+    """Returns folder -> number of files directly in it, not counting pictures."""
     return Counter(file.parent.as_posix() for file in files
                    if file.parts[0] in TOPS and file.suffix not in NOT_COUNTED)
 
@@ -84,7 +84,7 @@ def longest(root, code):
 
 
 def measure(root):
-    """Returns the lines to print, and whether a bound is broken."""
+    """Returns the lines to print, and whether a bound is exceeded."""
     files = tracked(root)
     lines = [f"{folder}: {count} files, above {MOST_FILES}" for folder, count in files_in_folders(files).most_common()
              if count > MOST_FILES]

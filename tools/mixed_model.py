@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fits right and wrong answers to methods and scenes, with answers of one participant alike.
+"""Models right and wrong answers by method and scene, with correlated answers of a participant.
 
 usage: mixed_model.py TIDY.csv     TIDY.csv is written by prostm study analyse ANSWERS --tidy TIDY.csv
 
@@ -9,8 +9,8 @@ statsmodels 0.13 or newer (apt: python3-statsmodels).
 The model is of generalised estimating equations: correct ~ method * scene, with one correlation between any two answers
 of a participant and the sandwich variance corrected for few participants (L. A. Mancl and T. A. DeRouen, Biometrics 57,
 126 (2001)). statsmodels has no mixed logistic model by maximum likelihood. Its BinomialBayesMixedGLM gives posteriors
-that depend on a prior and, by variational Bayes, are too narrow. Estimating equations hold even where the correlation
-is another. Their odds ratios are those over people, and nearer to 1 than those of one person by mixed_model.R.
+that depend on a prior and, by variational Bayes, are too narrow. Estimating equations are valid even if the correlation
+has another structure. Their odds ratios are population averages, nearer to 1 than those of one person by mixed_model.R.
 """
 
 import sys
@@ -44,7 +44,7 @@ def fit(table):
     model = smf.gee("correct ~ " + (" * ".join(terms) or "1"), groups="participant", data=table,
                     family=sm.families.Binomial(), cov_struct=sm.cov_struct.Exchangeable())
     with warnings.catch_warnings():
-        warnings.simplefilter("error")  # of a fit that has not converged
+        warnings.simplefilter("error")  # a fit that has not converged is an error
         return model.fit(cov_type="bias_reduced")
 
 

@@ -32,13 +32,13 @@ SCENES = ("one-plume", "four-plumes")
 RECORDED_IN = "four-plumes"
 TARGETS = ("frame", "hand", "target")
 PLANS = ("plan",)
-TAKE_TIME = ("plan/stage_time",)  # measured by each run's own clock
+TAKE_TIME = ("plan/stage_time",)  # measured times, which differ between runs
 FULL_SCALE = 0.7  # [Pa], fixed, so that the recording's settings suffice for the emission
 RATE, BLOCK = 40e3, 40
 
 
 class Failed(Exception):
-    """A program failed; the text says which and how."""
+    """A program failed; the text names it and the cause."""
 
 
 def call(command, environment):
@@ -132,7 +132,7 @@ def differences(files, groups):
 
 
 def compare(builds, case, seconds, environment, folder):
-    """Returns one line of the table, and whether everything is the same."""
+    """Returns one line of the table, and whether all results are the same."""
     settings = folder / "settings.toml"
     settings.write_text(f"[emit]\nfull_scale_pressure = {FULL_SCALE}\n")
     recordings = [folder / f"{number}.h5" for number in range(2)]

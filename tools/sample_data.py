@@ -3,9 +3,9 @@
 
 usage: sample_data.py PROSTM [FOLDER]
 
-PROSTM is the program, FOLDER where the files go; default: data. The fields are targets of the scripted hand in smoke and a
-drawn picture, the recording is the scripted hand at 50 frames a second. No person gave the answers: they are drawn at
-random.
+PROSTM is the program; the files are written to FOLDER (default: data). The fields are targets of the scripted hand in
+smoke and a drawn picture, the recording is the scripted hand at 50 frames a second. The answers are not from people:
+they are drawn at random.
 """
 
 import json
@@ -25,7 +25,7 @@ RECORDED_SECONDS = 8
 
 
 def record(prostm, folder, scene, seconds):
-    """A stepped run of the scripted hand, with a target for each of 50 steps a second."""
+    """Makes a stepped run of the scripted hand, with a target for each of 50 steps a second."""
     settings, out = folder / "samples.toml", folder / f"{scene}.h5"
     settings.write_text("[pipeline]\nworld_steps_per_plan = 1\n")
     subprocess.run([prostm, "run", "--stepped", "--scene", scene, "--seconds", str(seconds), "--preset", "fast",
@@ -34,7 +34,7 @@ def record(prostm, folder, scene, seconds):
 
 
 def strongest(recording):
-    """The patch with the largest sum of pressures: pressure, height, cell, origin, pose."""
+    """Returns the patch with the largest sum of pressures: pressure, height, cell, origin, pose."""
     with h5py.File(recording) as f:
         target = f["target"]
         shapes = np.stack([target["rows"], target["cols"]], axis=1)
@@ -69,7 +69,7 @@ def write_field(patch, path):
 
 
 def letter(pixels=60):
-    """The letter P in soft strokes, white on black, row 0 on top; 0 to 1."""
+    """Draws the letter P in soft strokes, white on black, row 0 on top; 0 to 1."""
     y, x = np.mgrid[0:pixels, 0:pixels] / (pixels - 1)
     stem = np.hypot(x - 0.3, y - np.clip(y, 0.12, 0.88))
     bars = np.hypot(x - np.clip(x, 0.3, 0.52), np.abs(y - 0.31) - 0.19)
@@ -79,7 +79,7 @@ def letter(pixels=60):
 
 
 def write_png(image, path):
-    """A picture of 8 bits of grey."""
+    """Writes an 8-bit greyscale picture."""
     grey = np.round(255 * image).astype(np.uint8)
 
     def chunk(kind, data):
@@ -92,7 +92,7 @@ def write_png(image, path):
 
 
 def write_hands(recording, path):
-    """The hands of a recording in the frame of a tracker at the array's centre: (x, y, z) of T is (x, -z, y) of D."""
+    """Writes a recording's hands in the frame of a tracker at the array's centre: (x, y, z) of T is (x, -z, y) of D."""
     turn = np.array([np.sqrt(0.5), 0, 0, np.sqrt(0.5)])  # x, y, z, w: T to D, a quarter turn about x
     lines = [json.dumps({"format": "hand-frames", "version": 1, "units": "m", "source": "prostm's scripted hand"})]
     with h5py.File(recording) as f:
@@ -109,7 +109,7 @@ def write_hands(recording, path):
 
 
 def times_inverse(turn, q):
-    """turn⁻¹ · q, each row x, y, z, w."""
+    """Returns turn⁻¹ · q, each row x, y, z, w."""
     (ax, ay, az), aw = -turn[:3], turn[3]
     x, y, z, w = q.T
     return np.stack([aw * x + ax * w + ay * z - az * y, aw * y - ax * z + ay * w + az * x,
@@ -121,8 +121,8 @@ def flat(values, digits):
 
 
 def write_answers(path):
-    """Answers of 16 participants who do not exist, eight with each method. Each has a share of right answers of its
-    own, around the method's."""
+    """Writes answers of 16 made-up participants, eight with each method. Each has a share of right answers of its own,
+    around the method's."""
     draw = random.Random(5)
     scenes = ("one-plume", "four-plumes")
     lines = ["participant,trial,method,scene,question,answer,correct,response_s"]

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Tells why tests were skipped, which ctest itself leaves out.
+"""Lists why tests were skipped, which ctest itself does not print.
 
 usage: skipped_tests.py LOG     LOG is Testing/Temporary/LastTest.log of a build folder
 
 Prints one line for each reason, with the tests: those of GoogleTest and of scripts by their entry in ctest, those of
-pytest by file and line. Prints nothing where none was skipped.
+pytest by file and line. Prints nothing if no test was skipped.
 """
 
 import re
@@ -18,7 +18,7 @@ PYTEST = re.compile(r"^SKIPPED \[\d+\] (\S+:\d+): (.*)$")
 
 
 def skipped(log):
-    """Reason -> the tests that were skipped for it, in the order of the log."""
+    """Returns reason -> the tests that were skipped for it, in the order of the log."""
     reasons, entry, lines = {}, "", log.splitlines()
     for i, line in enumerate(lines):
         begun, by_pytest = ENTRY.match(line), PYTEST.match(line)

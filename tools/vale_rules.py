@@ -1,7 +1,7 @@
-"""Reads the rules of plain English in tools/vale/prostm, which are written for Vale, and applies them to a text.
+"""Reads the rules of plain English in tools/vale/prostm, which have the format of Vale, and applies them to a text.
 
-Of Vale's rules it knows the kinds `existence` and `substitution`, with the keys below; a rule that has another is an
-error, so that no rule is left out in silence.
+It knows Vale's rules `existence` and `substitution`, with the keys below; any other rule or key is an error, so that no
+rule is silently ignored.
 """
 
 import re
@@ -14,7 +14,7 @@ GAP = r"[*_]*\s(?:[\s*_]|///?<?|\#)*"
 
 
 class Rule:
-    """A pattern, and how to say what is wrong with what it finds."""
+    """A pattern, and the message for its matches."""
 
     def __init__(self, token, better, rule):
         pattern = token if rule.get("nonword") else rf"\b(?:{token})\b"
@@ -23,7 +23,7 @@ class Rule:
         self.message, self.better = rule["message"], better
 
     def places(self, text):
-        """(line, what is wrong) of each place."""
+        """Finds (line, problem) of each match."""
         for found in self.pattern.finditer(text):
             words = re.sub(GAP, " ", found[0])
             values = [words] if not self.better else [self.better, words]
@@ -31,7 +31,7 @@ class Rule:
 
 
 def read_file(path):
-    """The rules of one file. Raises ValueError with a sentence."""
+    """Returns the rules of one file. Raises ValueError with a sentence."""
     rule = yaml.safe_load(path.read_text(encoding="utf-8"))
     unknown = set(rule) - KEYS
     if unknown:
@@ -44,7 +44,7 @@ def read_file(path):
 
 
 def read_rules(folder):
-    """The rules of all files of a folder. Raises ValueError if it holds no rule."""
+    """Returns the rules of all files of a folder. Raises ValueError if it holds no rule."""
     rules = [rule for path in sorted(folder.glob("*.yml")) for rule in read_file(path)]
     if not rules:
         raise ValueError(f"{folder} has no rules")

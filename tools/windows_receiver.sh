@@ -3,8 +3,8 @@
 #
 # usage: tools/windows_receiver.sh [BUILD]     BUILD is the folder with the program (default: build/release)
 #
-# Installs nothing: it says which Debian package is missing. Wine gets a prefix of its own in BUILD, so a person's
-# Wine stays as it is. The receiver must get samples, lose none that prostm sent over TCP, and be silent at the end.
+# Installs nothing: it names missing Debian packages. Wine uses a prefix in BUILD and leaves the user's own unchanged.
+# The receiver must get samples, lose none that prostm sent over TCP, and be silent at the end.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=$(realpath "${1:-$root/build/release}")

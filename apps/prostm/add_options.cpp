@@ -18,11 +18,11 @@ void add_common(CLI::App& command, CommonOptions& o) {
   add_input(command, o.files, "--settings", o.settings_file,
             "settings of any stage, a TOML file (docs/reference/files.md)");
   add_json(command, o.files, o.json);
-  command.add_option("--seed", o.seed, "of everything that is drawn at random");
+  command.add_option("--seed", o.seed, "random seed");
   add_name(command, "--preset", o.preset, preset_choices());
-  command.add_option("--paths", o.paths, "focal points, 1 to 8");
+  command.add_option("--paths", o.paths, "number of focal points, 1 to 8");
   command.add_option("--budget-ms", o.budget_ms,
-                     "time for a plan of preset best; 0: a fixed amount of work");
+                     "time budget for each plan of preset best; 0: a fixed amount of work");
   add_name(command, "--method", o.method,
            "pro-stm (default): paths, or am: foci that stand still, modulated (docs/guides/am.md)");
 }
@@ -37,13 +37,13 @@ void add_device(CLI::App& command, CommonOptions& o) {
     if (kind.is_built()) forms += (forms.empty() ? "" : ", ") + form_of(kind);
   }
   add_name(command, "--device", o.device,
-           "what plays: " + forms + "; default: sim; see prostm devices");
+           "output device: " + forms + "; default: sim; see prostm devices");
 }
 
 void add_lock_memory(CLI::App& command, bool& lock_memory) {
   command.add_flag("--lock-memory", lock_memory,
-                   "keep all memory from being swapped out, and say whether that is allowed, and "
-                   "real-time priority");
+                   "keep all memory from being swapped out, and print whether this and real-time "
+                   "priority are allowed");
 }
 
 CLI::Option* add_figure(CLI::App& command, CommonOptions& o, const std::string& help) {
@@ -73,16 +73,17 @@ void add_hand(CLI::App& command, CommonOptions& common, std::string& hand,
       hint_for_hand)
       ->capture_default_str();
   command.add_option("--hand-size", hand_size,
-                     "of --hand study: all lengths over those of an average hand, 0.7 to 1.3");
+                     "with --hand study: all lengths over those of an average hand, 0.7 to 1.3");
   add_input_or_name(command, common.files, "--tracker", common.tracker, names_json,
-                    "where the tracker is: centre (default), ultraleap-kit or another kit, or a "
+                    "pose of the tracker: centre (default), ultraleap-kit or another kit, or a "
                     "pose file (.json)");
 }
 
 void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
                   std::string& hand, std::optional<double>& hand_size) {
   add_common(command, common);
-  add_name(command, "--world", common.world, "what presses on the hands: " + world_choices());
+  add_name(command, "--world", common.world,
+           "source of the pressure on the hands: " + world_choices());
   add_name(command, "--scene", scene, scene_choices());
   add_hand(command, common, hand, hand_size);
   command.add_option("--grid", common.grid, "cells along each edge of the fluid's box");

@@ -11,7 +11,7 @@
 
 namespace prostm::app {
 
-/// The work that the command line asks for: it begins once all is parsed and files are checked.
+/// The work of a command, which begins once all options are parsed and files are checked.
 struct Work {
   const Files* files = nullptr;  ///< null: none
   std::function<int()> run;
@@ -26,8 +26,8 @@ CLI::Option* add_input(CLI::App& command, Files& files, const std::string& name,
       ->each([&files, name](const std::string& path) { files.reads(name, path); });
 }
 
-/// The same, where some values are names of what is built in. @param hint says which of them a file
-/// that is not there may stand for.
+/// The same, where some values are built-in names. @param hint returns which of them was probably
+/// meant by a file that does not exist.
 template <class Value>
 CLI::Option* add_input_or_name(CLI::App& command, Files& files, const std::string& name,
                                Value& value, bool (*is_file)(const std::string&),
@@ -49,7 +49,7 @@ CLI::Option* add_output(CLI::App& command, Files& files, const std::string& name
       ->each([&files, name, check](const std::string& path) { files.writes(name, path, check); });
 }
 
-/// One that takes one of a few words.
+/// An option that takes one of a few words.
 template <class Value>
 CLI::Option* add_name(CLI::App& command, const std::string& name, Value& value,
                       const std::string& help) {
@@ -61,23 +61,23 @@ void add_json(CLI::App& command, Files& files, std::string& json);
 void add_common(CLI::App& command, CommonOptions& o);
 void add_array(CLI::App& command, CommonOptions& o,
                const std::string& help = prostm::array_choices(" (default)"));
-/// --device, with the forms that a device's name has.
+/// --device, with the forms of device names.
 void add_device(CLI::App& command, CommonOptions& o);
 void add_lock_memory(CLI::App& command, bool& lock_memory);
 CLI::Option* add_figure(CLI::App& command, CommonOptions& o, const std::string& help);
-/// How the file of a field is read. @param of the option that names the file, unless it is always
-/// there.
+/// Options for reading a field's file. @param of the option that names the file, or null if the
+/// file is always given.
 void add_field_file(CLI::App& command, prostm::FieldFileOptions& o, CLI::Option* of = nullptr);
-/// Where pages are served. @return the two options.
+/// Address and port of the pages. @return the two options.
 std::array<CLI::Option*, 2> add_address(CLI::App& command, RunOptionsGiven& o);
 /// --hand, --hand-size and --tracker.
 void add_hand(CLI::App& command, CommonOptions& common, std::string& hand,
               std::optional<double>& hand_size);
-/// Those of add_common(), and what a run is made of.
+/// The options of add_common(), and those that make up a run.
 void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
                   std::string& hand, std::optional<double>& hand_size);
 
-/// A command of the design that does not exist yet answers with a sentence, not with a usage error.
+/// A planned command that does not exist yet: answers with a sentence, not with a usage error.
 void add_unbuilt(CLI::App& app, const std::string& name, const std::string& help);
 
 // The commands of each group of the help page, with their options; a group has a folder of its own.

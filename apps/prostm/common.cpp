@@ -47,8 +47,8 @@ void check_files_of(const PipelineSettings& settings, const CommonOptions& optio
   files.check();
 }
 
-/// Returns a setting as the option that gives it: with its name and unit. @param factor how many of
-/// the option's units are one of the setting's.
+/// Returns a setting with the name and unit of the option that sets it. @param factor the setting's
+/// unit in units of the option.
 Setting as_option(const SettingsGroup& group, std::string_view setting, const char* option,
                   const char* unit = "", double factor = 1.0) {
   const std::vector<SettingRow> rows = setting_rows(group.read);
@@ -62,7 +62,7 @@ Setting as_option(const SettingsGroup& group, std::string_view setting, const ch
   return out;
 }
 
-/// Checks the options that are settings by another name, in the words of the options.
+/// Checks the bounds of options that correspond to settings; messages name the options.
 void check_bounds(const CommonOptions& options, const PipelineSettings& settings) {
   const SettingsGroup plan = group_of("plan", settings.plan);
   if (options.paths) require_bounds(as_option(plan, "paths", "--paths"), *options.paths);
@@ -75,8 +75,8 @@ void check_bounds(const CommonOptions& options, const PipelineSettings& settings
   if (options.seed) require_bounds(as_option(plan, "seed", "--seed"), *options.seed);
 }
 
-/// Settles the transducers: where nobody chose them, they are those of the device.
-/// @throws InputError for others that are built in.
+/// Sets the transducers: those of the device unless others are chosen.
+/// @throws InputError for another built-in array than the device's.
 void settle_array(PipelineSettings& settings, bool is_chosen) {
   const DeviceKind& kind = *device_named(settings.device).kind;
   if (!is_chosen && kind.array != nullptr) settings.array = kind.array;
@@ -99,8 +99,9 @@ std::string doubt_of_array(const PipelineSettings& settings) {
                     given = settings.transducers.position.size();
   if (given % of_unit == 0) return {};
   return fmt::format(
-      "{} has {} transducers, and the units of --device {} have {} each: its focal points may not "
-      "be as wide as the plans count on.",
+      "{} has {} transducers, but the units of --device {} have {} each: focal points may not be "
+      "as "
+      "wide as the planner assumes.",
       settings.array, given, settings.device, of_unit);
 }
 
@@ -148,7 +149,7 @@ PipelineSettings make_settings(const CommonOptions& options,
 void obey_lock_memory(bool asked, std::FILE* out) {
   if (!asked) return;
   fmt::print(out, "{}\n{}\n",
-             lock_memory() ? "All memory is locked: nothing of it waits for a disk."
+             lock_memory() ? "All memory is locked: none of it can be swapped out."
                            : memory_sentence(false),
              priority_sentence(realtime_limits().priority));
   std::fflush(out);
@@ -202,7 +203,7 @@ std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSe
         name == "openxr" ? make_openxr_tracker() : make_leap_tracker(leap_address(name)),
         settings.track);
   }
-  // with a clock a recording stands in for a tracker, of which only the past is known
+  // in real time a recording is played like a tracker, of which only past frames are known
   const auto make = settings.devices.of<SimulatedArraySettings>().realtime ? make_replayed_hand
                                                                            : make_recorded_hand;
   Progress progress("reading " + name);
@@ -224,7 +225,7 @@ bool never_came(const std::optional<TrackerStatus>& tracker) {
 
 namespace {
 
-/// Also of a thread, which needs room for its stack.
+/// True also for a failure to create a thread, which needs memory for its stack.
 bool lacks_memory(const std::exception& error) {
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return true;
   const auto* system = dynamic_cast<const std::system_error*>(&error);
@@ -286,7 +287,7 @@ void say_written(std::FILE* out, const std::string& path) {
 void flush(std::FILE* out) {
   const int error = std::fflush(out) == 0 ? 0 : errno;
   if (error == 0 && std::ferror(out) == 0) return;
-  std::clearerr(out);  // told once
+  std::clearerr(out);  // reported once
   throw InputError(
       fmt::format("standard {} cannot be written ({})", out == stdout ? "output" : "error",
                   error != 0 ? std::generic_category().message(error) : "a write before failed"));

@@ -20,50 +20,50 @@
 
 namespace prostm::app {
 
-/// Defaults, then the settings file, then the options. @throws InputError also for an output that
-/// is a file which the settings name, and for an array that contradicts the device.
-/// @param plays whether an array is to play what is planned: the device's own, unless another is
-/// given.
+/// Returns the defaults, changed by the settings file and then by the options. @throws InputError
+/// for bad settings, an output file that the settings name as an input, and an array that
+/// contradicts the device.
+/// @param plays whether an array plays the plans: the device's own, unless another is given.
 PipelineSettings make_settings(const CommonOptions& options,
                                const std::optional<std::string>& scene, bool plays = false);
 
-/// Locks the memory where `--lock-memory` asks for it, and says whether that was allowed, and
-/// whether real-time priority is.
+/// Locks the memory if `--lock-memory` is given, and prints whether that and real-time priority are
+/// allowed.
 void obey_lock_memory(bool asked, std::FILE* out);
 
-/// Says where an array file cannot be the transducers of the device; empty where it may be.
+/// Returns a sentence if an array file cannot describe the device's transducers, else nothing.
 std::string doubt_of_array(const PipelineSettings& settings);
 
-/// Whether `--array` or `--tracker` names a file, rather than one that is built in.
+/// Whether the value of `--array` or `--tracker` is a file, not a built-in name.
 bool names_json(const std::string& name);
 /// Whether `--hand` names a live tracker.
 bool names_tracker(const std::string& hand);
-/// Whether `--hand` names a recording, rather than a source that is built in.
+/// Whether `--hand` names a recording, not a built-in source.
 bool names_recording(const std::string& hand);
-/// The end of a sentence about a recording that is not there: the source that may have been meant.
+/// Returns the end of a sentence about a missing recording: the source that was probably meant.
 std::string hint_for_hand(const std::string& hand);
 
 /// The focus solver that `--solver` names. @throws InputError for a name that is unknown.
 FocusMethod solver_of(const std::string& name);
 
-/// Settles what `--hand` and `--hand-size` say of the settings: under a study hand the jets go to
-/// the palm. @throws InputError for a size of another hand.
+/// Applies `--hand` and `--hand-size` to the settings: with a study hand the jets follow the palm.
+/// @throws InputError for the size of another hand.
 void settle_hand(const std::string& hand, std::optional<double> size, PipelineSettings& settings);
 
 /// The hands that `--hand` names. A recording starts again at its end.
 std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings);
 
-/// Says what went wrong.
+/// Returns a sentence about a failure.
 std::string sentence_of(const std::exception_ptr& failure);
-/// Prints that to standard error. @return the exit status it asks for.
+/// Prints that sentence to standard error. @return the exit status of the failure.
 int tell(const std::exception_ptr& failure);
 
 /// Prints a warning to standard error.
 void warn(const std::string& sentence);
-/// Warns of what is unusual in a recording of hands.
+/// Prints warnings about unusual content of a recording of hands.
 void warn_of(const HandSource& hands);
 
-/// Does several things, each whatever became of the others.
+/// Runs several actions, each even if others failed.
 class Attempts {
  public:
   template <class Function>
@@ -74,7 +74,7 @@ class Attempts {
       if (!first_) first_ = std::current_exception();
     }
   }
-  /// @throws what the first that failed threw.
+  /// @throws the exception of the first action that failed.
   void finish() const {
     if (first_) std::rethrow_exception(first_);
   }
@@ -83,18 +83,18 @@ class Attempts {
   std::exception_ptr first_;
 };
 
-/// Where a command's prose goes: standard output, or standard error when standard output carries
-/// the JSON.
+/// Returns the stream for a command's text: standard output, or standard error if JSON goes to
+/// standard output.
 std::FILE* prose(const std::string& json_option);
 
-/// Says that an output was written: "wrote palm.png". Says nothing for "-" and for no name.
+/// Prints that an output was written: "wrote palm.png". Prints nothing for "-" or an empty name.
 void say_written(std::FILE* out, const std::string& path);
 
-/// Writes what was printed. @throws InputError when it cannot be.
+/// Flushes the stream. @throws InputError if it cannot be written.
 void flush(std::FILE* out);
 
-/// Writes JSON to what `--json` names, with the program's version and commit in an object's key
-/// "prostm"; numbers that are not finite become null. Does nothing if the option is empty.
+/// Writes JSON to the file of `--json`, with the program's version and commit under the key
+/// "prostm" of an object; numbers that are not finite become null. Does nothing without the option.
 void write_json(const std::string& json_option, nlohmann::ordered_json value);
 
 /// Waits [s].
@@ -103,8 +103,7 @@ void pause(double seconds);
 nlohmann::ordered_json device_json(const DeviceInfo& device);
 nlohmann::ordered_json to_json(const Summary& summary, double unit);
 
-/// A table of metrics, a row for each of what they are of; a metric that no row knows has no
-/// column.
+/// A row of a table of metrics; a metric that is missing in all rows has no column.
 struct MetricsRow {
   MetricsRow(std::string row, const Metrics& of) : name(std::move(row)), metrics(of) {}
   std::string name;
@@ -115,16 +114,16 @@ void print_metrics(std::FILE* out, const std::string& heading, const std::vector
 /// Prints each as "warning: …".
 void print_warnings(std::FILE* out, const std::vector<std::string>& warnings);
 
-/// Three decimals; what rounds to zero has no sign.
+/// Formats with three decimals; a value that rounds to zero has no sign.
 std::string thousandths(double value);
 
-/// Says what of a plan was chosen by what is felt; empty where that does not count.
+/// Returns a sentence about the parts of a plan that are chosen by the skin model; empty if none.
 std::string felt_words(const PipelineSettings& settings);
 
 /// Checks that the device of the settings can play in a mode. @throws InputError.
 void check_mode(const PipelineSettings& settings, RunMode mode);
 
-/// Whether a live tracker never sent anything.
+/// Whether a live tracker never sent a frame.
 bool never_came(const std::optional<TrackerStatus>& tracker);
 
 inline constexpr int kNoFrame = 3;   ///< exit status: the tracker never sent a frame

@@ -24,7 +24,7 @@ void Files::writes(const std::string& option, const std::string& path, Check als
 void Files::check() const {
   std::string input;  // the option that takes standard input
   for (const Entry& entry : entries_) {
-    // an option that follows an option takes the place of its value
+    // an option where the value of the option before is missing
     if (entry.path.starts_with("--")) {
       throw InputError(fmt::format("{} needs the name of a file, and {} is an option", entry.option,
                                    entry.path));

@@ -16,10 +16,10 @@ class Files {
   using Check = void (*)(const std::string& path);
 
   /// @param option names the file in messages, e.g. "--hand". @param hint the end of the sentence
-  /// about a file that cannot be read, where something else may have been meant.
+  /// about a file that cannot be read: what may have been meant instead.
   void reads(const std::string& option, const std::string& path, std::string hint = {});
-  /// @param also what else must hold before the work, if anything. @param of how the option of an
-  /// input begins that the output may be: a file that the command brings up to date.
+  /// @param also a further check before the work. @param of prefix of an input's option; the output
+  /// may be that input's file, which the command updates.
   void writes(const std::string& option, const std::string& path, Check also = check_writable,
               const std::string& of = {});
   /// @throws InputError: an input that cannot be read, an output that is another file of the
@@ -39,8 +39,8 @@ class Files {
   std::vector<Entry> entries_;
 };
 
-/// Checks a file for JSON. @throws InputError: it cannot be written, or the ending of its name says
-/// another kind.
+/// Checks a file for JSON. @throws InputError: it cannot be written, or its name ends like another
+/// kind of file.
 void check_json_output(const std::string& path);
 /// The same for a table, whose name must end in .csv.
 void check_csv_output(const std::string& path);

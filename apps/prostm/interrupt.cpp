@@ -35,7 +35,7 @@ void on_signal(int signal) {
   _exit(128 + signal);
 }
 
-/// Tidies up, and lets the fault end the program as it would have.
+/// Cleans up, and then lets the fault end the program as usual.
 void on_fault(int signal) {
   std::signal(signal, SIG_DFL);
   tidy();

@@ -1,5 +1,5 @@
 #pragma once
-/// Signals that end a command early, but not before its results are kept.
+/// Signals that end a command early, after its results are saved.
 
 #include <string>
 
@@ -8,17 +8,17 @@ namespace prostm::app {
 /// From construction on, every signal by which a person, a shell or a batch system ends a program
 /// only sets a flag; a second one ends the program at once. These are SIGINT (Ctrl-C), SIGTERM,
 /// SIGHUP (the terminal is gone), SIGUSR1, SIGUSR2 and SIGALRM (warnings of batch systems before
-/// they kill), and SIGXCPU (ulimit -t). Those that are ignored stay so, as SIGHUP under nohup, but
-/// for SIGINT and SIGTERM. A reader of the output that goes is an error of writing, no signal.
+/// they kill), and SIGXCPU (ulimit -t). Signals that are already ignored, such as SIGHUP under
+/// nohup, stay ignored, except SIGINT and SIGTERM. If the reader of the output goes away, that is a
+/// write error, not a signal.
 class Interrupt {
  public:
   Interrupt();
   bool requested() const;
-  /// Signal that ended the command, as words: "Ctrl-C (SIGINT)", "SIGUSR1"; empty where nothing
-  /// did.
+  /// Signal that ended the command, as words: "Ctrl-C (SIGINT)", "SIGUSR1"; empty without one.
   std::string cause() const;
-  /// Exit status of a command that was cut short but kept its results: 128 and the signal's number;
-  /// 0 where there was none.
+  /// Exit status of a command that was cut short but saved its results: 128 plus the signal's
+  /// number; 0 without a signal.
   int status() const;
 };
 

@@ -23,10 +23,10 @@ using namespace prostm::app;
 
 void add_settings(CLI::App& app, Work& work) {
   auto* command = app.add_subcommand(
-      "settings", "every setting of a settings file: its value, bounds and meaning");
+      "settings", "list the settings of a settings file, with defaults, bounds and meanings");
   auto o = std::make_shared<SettingsOptionsGiven>();
   add_common(*command, o->common);
-  add_name(*command, "name", o->name, "list these alone: a group, a key, or GROUP.KEY");
+  add_name(*command, "name", o->name, "list only these: a group, a key, or GROUP.KEY");
   command->add_flag("--toml", o->toml, "print a settings file to start from instead")
       ->excludes(command->get_option("--json"));
   command->footer("Example:\n  prostm settings plan\n  prostm settings --toml > my.toml");
@@ -38,7 +38,7 @@ void add_settings(CLI::App& app, Work& work) {
 void add_help(CLI::App& app, Work& work) {
   auto* command = app.add_subcommand("help", "the help page of a command, as --help prints it");
   auto name = std::make_shared<std::string>();
-  add_name(*command, "command", *name, "its name; default: all commands in short");
+  add_name(*command, "command", *name, "its name; default: an overview of all commands");
   command->footer("Example:\n  prostm help plan");
   command->callback([name, &app, &work] {
     work = {nullptr, [name, &app] {
@@ -76,8 +76,8 @@ void add_commands(CLI::App& app, Work& work) {
   }
 }
 
-/// Has whole numbers with leading zeros read as decimal: 010 is ten. The parser would read it as
-/// octal, so that participant 010 were participant 8.
+/// Makes the parser read whole numbers with leading zeros as decimal: 010 is ten. It would read
+/// them as octal, so that participant 010 would be participant 8.
 void read_whole_numbers_as_decimal(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {
     if (option->get_type_name() != "INT" && option->get_type_name() != "UINT") continue;
@@ -110,7 +110,7 @@ int obey(int argc, char** argv) {
     app.parse(argc, argv);
     if (work.files != nullptr) {
       work.files->check();
-      // a reader of the words that goes must not cost the files
+      // the files must be written even if the reader of standard output goes away
       if (work.files->any_output()) std::signal(SIGPIPE, SIG_IGN);
     }
     return work.run();
@@ -119,7 +119,7 @@ int obey(int argc, char** argv) {
     std::fprintf(stderr, "prostm: %s\n", usage_sentence(app, error).c_str());
     return kBadInput;
   } catch (const std::system_error&) {
-    // what could not be printed is told at the end
+    // a failure to print is reported by the exit status
     return std::ferror(stdout) != 0 ? kBadInput : tell(std::current_exception());
   } catch (...) {
     return tell(std::current_exception());

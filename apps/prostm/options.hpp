@@ -13,10 +13,10 @@
 
 namespace prostm::app {
 
-/// Options of every command that runs a stage. An unset optional leaves what the settings file or
-/// the default says.
+/// Options of every command that runs a stage. An unset optional keeps the value of the settings
+/// file, or the default.
 struct CommonOptions {
-  Files files;  ///< all that the command line names
+  Files files;  ///< all files of the command line
   std::string settings_file;
   std::string json;  ///< file, "-" for standard output, empty for none
   std::string figure;
@@ -42,7 +42,7 @@ struct RunOptionsGiven {
   bool view = false, stay = false;
   std::optional<std::string> view_address;
   std::optional<int> view_port;
-  std::optional<std::string> tracker_file;  ///< that the page's calibration writes
+  std::optional<std::string> tracker_file;  ///< written by the page's calibration
 };
 
 struct PlanOptionsGiven {
@@ -78,13 +78,13 @@ struct SolveOptionsGiven {
 struct FieldOptionsGiven {
   CommonOptions common;  ///< settings file, array, JSON and figure
   std::string plan;
-  std::string target;     ///< the field that was planned; empty: no target
+  std::string target;     ///< the field that the plan was made for; empty: no target
   FieldFileOptions file;  ///< how `target` is read
   std::string solver = "weighted";
   double full_scale_pa = 0.0;
   bool memoryless = false;
-  bool felt_spectrum = false;  ///< tell what is felt harmonic by harmonic
-  bool widths = false;         ///< of a focus, instead of the field of a plan
+  bool felt_spectrum = false;  ///< print the percept of each harmonic
+  bool widths = false;         ///< print widths of a focus instead of the field of a plan
 };
 
 struct LevelsOptionsGiven {
@@ -93,15 +93,15 @@ struct LevelsOptionsGiven {
 
 struct DevicesOptionsGiven {
   Files files;
-  std::vector<std::string> names;  ///< what to look for; empty: all that is on this machine
+  std::vector<std::string> names;  ///< what to probe; empty: everything on this machine
   std::string json;
   bool budget = false;
 };
 
 struct SelftestOptionsGiven {
   CommonOptions common;      ///< device, array, settings file, JSON and figure
-  double seconds = 4.0;      ///< of each figure
-  double height_mm = 150.0;  ///< of the figures over the array
+  double seconds = 4.0;      ///< duration of each figure
+  double height_mm = 150.0;  ///< height of the figures above the array
   double level = 1.0;        ///< largest intensity
   bool yes = false;          ///< play without being asked
   bool silent = false;       ///< play nothing
@@ -110,7 +110,7 @@ struct SelftestOptionsGiven {
 struct SoakOptionsGiven {
   RunOptionsGiven run;
   double minutes = 30.0;
-  bool load = false;  ///< the middle third beside other work on all cores
+  bool load = false;  ///< load all cores during the middle third
 };
 
 struct SettingsOptionsGiven {
@@ -129,12 +129,12 @@ struct StudyRunOptionsGiven {
   RunOptionsGiven run;  ///< hand, device, settings and pages
   std::string protocol;
   std::string participant;         ///< number
-  std::string replaces;            ///< participant whose place they take; empty: nobody's
+  std::string replaces;            ///< the participant whom this one replaces; empty: none
   std::string folder = "answers";  ///< of the response files
   bool resume = false;
   bool take_over = false;            ///< replace a lock file of another machine
   std::optional<int> rehearse;       ///< trials, 0: all; nothing: people answer
-  std::vector<std::string> markers;  ///< addresses that they go to
+  std::vector<std::string> markers;  ///< addresses that receive markers
 };
 
 struct StudyCheckOptionsGiven {
@@ -169,7 +169,7 @@ struct SimulateOptionsGiven {
   int hands = 6;
   int grid = 64;
   int seed = 1;
-  double noise = 1.0;  ///< factor of the observers' own
+  double noise = 1.0;  ///< factor on the observers' own noise
 };
 
 struct ReportOptionsGiven {

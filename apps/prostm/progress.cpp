@@ -13,8 +13,8 @@
 namespace prostm::app {
 namespace {
 
-constexpr double kBetween = 0.2;   // two lines [s]
-constexpr double kPatience = 2.0;  // from which the time of a stage is shown [s]
+constexpr double kBetween = 0.2;   // least time between two lines [s]
+constexpr double kPatience = 2.0;  // the time of a stage is shown from here on [s]
 
 /// Whether standard error is a terminal whose lines can be erased.
 bool can_erase_lines() {
@@ -77,7 +77,7 @@ void Progress::clear() {
   erase();
 }
 
-/// A terminal that has gone does not end the work.
+/// A terminal that was closed does not end the work.
 void Progress::write(const std::string& line) {
   std::fputs(("\r" + line + " \033[K").c_str(), stderr);
   std::fflush(stderr);

@@ -9,9 +9,9 @@
 
 namespace prostm::app {
 
-/// One line of standard error, rewritten a few times a second: the counts of show(), or the time
-/// that a stage without counts has taken. Silent where standard error is no terminal whose lines
-/// can be erased.
+/// One line on standard error, rewritten a few times a second: the counts of show(), or the elapsed
+/// time of a stage without counts. Silent unless standard error is a terminal whose lines can be
+/// erased.
 class Progress {
  public:
   /// Begins the first stage, as next() does.
@@ -24,9 +24,9 @@ class Progress {
   void show(double done, double all, const char* unit);
   /// Begins a stage: its time is shown from two seconds on, until show() or clear().
   void next(std::string what);
-  /// A line that stays, above the one that is rewritten.
+  /// Prints a permanent line above the one that is rewritten.
   void say(std::FILE* out, const std::string& line);
-  void clear();  ///< the line, so that something else can be printed
+  void clear();  ///< clears the line, so that something else can be printed
 
  private:
   void watch(const std::stop_token& stop);

@@ -34,7 +34,7 @@ std::vector<ListedSetting> list_of(const PipelineSettings& settings) {
   return all;
 }
 
-/// @throws InputError that no setting has this name, with the nearest one that exists.
+/// @throws InputError always: no setting has this name; suggests the most similar one.
 [[noreturn]] void refuse(const std::vector<ListedSetting>& all, const std::string& name) {
   const std::size_t dot = name.find('.');
   const std::string group = name.substr(0, dot);
@@ -60,7 +60,7 @@ std::vector<ListedSetting> list_of(const PipelineSettings& settings) {
                           : fmt::format("the groups are {}", fmt::join(groups, ", "))));
 }
 
-/// The settings that a group, a key or GROUP.KEY names.
+/// Returns the settings of a group, or those with a key, or GROUP.KEY.
 std::vector<ListedSetting> chosen(std::vector<ListedSetting> all, const std::string& name) {
   if (name.empty()) return all;
   std::vector<ListedSetting> some;

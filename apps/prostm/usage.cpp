@@ -36,7 +36,7 @@ bool lists(const std::string& help, const std::string& word) {
          (after.empty() || after.starts_with(",") || after.starts_with(" ("));
 }
 
-/// '; did you mean "--array autd3"?' for a word that one option alone takes as its value.
+/// Returns '; did you mean "--array autd3"?' for a word that is a value of exactly one option.
 std::string did_you_mean_value(const std::string& word, const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options())
@@ -50,7 +50,7 @@ std::string unknown_command(const CLI::App& program, const std::string& name) {
                      did_you_mean(name, command_names(program)));
 }
 
-/// The arguments that nothing takes, options without their values.
+/// Returns the arguments that were not recognised, options without their values.
 std::vector<std::string> extras_of(const CLI::App& app) {
   if (app.get_prefix_command()) return {};
   std::vector<std::string> extras = app.remaining();
@@ -64,7 +64,7 @@ std::vector<std::string> extras_of(const CLI::App& app) {
 /// @param name of the command, or of the program.
 std::string about_extras(const CLI::App& command, const std::string& name,
                          const std::vector<std::string>& extras) {
-  // a value that is left over belongs to an option that is misspelled
+  // a left-over value belongs to a misspelled option
   const auto is_dashed = [](const std::string& extra) { return extra.starts_with("-"); };
   const auto option = std::ranges::find_if(extras, is_dashed);
   const bool is_option = option != extras.end();
@@ -82,14 +82,14 @@ std::string about_extras(const CLI::App& command, const std::string& name,
                      shown_name(extra), hint);
 }
 
-/// The kind of value that an option takes, for one that it cannot be.
+/// Returns the kind of value that an option takes, for a message about an invalid one.
 std::string wanted(const CLI::Option& option, const std::string& value) {
   if (option.get_type_name() == "FLOAT") return "a number";
   const bool is_whole = value.find_first_not_of("+-0123456789") == value.npos;
   return is_whole ? "a whole number within 32 bits" : "a whole number";
 }
 
-/// The value of an option that there are too many or too few of, or that cannot be converted.
+/// Returns a sentence about an option with too many or too few values, or an invalid one.
 std::string about_value(const CLI::Option& option, const std::string& name) {
   if (option.count() > 1)
     return fmt::format("{} is given {} times; give it once", name, option.count());
@@ -99,28 +99,28 @@ std::string about_value(const CLI::Option& option, const std::string& name) {
   return fmt::format("{} is \"{}\"; it must be {}", name, shown_name(value), wanted(option, value));
 }
 
-/// The sentence of the parser with other words in the middle.
+/// Returns the parser's sentence with other words in the middle.
 std::string reworded(const std::string& what, std::string_view between, const char* words,
                      const char* end = "") {
   const std::size_t at = what.find(between);
   return what.substr(0, at) + words + what.substr(at + between.size()) + end;
 }
 
-/// The parser's errors begin with the name of an option, some after a few words.
+/// Returns the option that a parser's error names: its first word, or one after a few words.
 std::string option_of(const std::string& what) {
   constexpr std::string_view kBefore = "Could not convert: ";
   const std::size_t start = what.starts_with(kBefore) ? kBefore.size() : 0;
   return what.substr(start, what.find_first_of(": ", start) - start);
 }
 
-/// The innermost command that was parsed, or the program where it has none.
+/// Returns the innermost command that was parsed, or the program without one.
 const CLI::App& parsed_command(const CLI::App& program) {
   const CLI::App* command = &program;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
   return *command;
 }
 
-/// Its name after those of the commands that it belongs to: "study analyse".
+/// Returns a command's name after those of its parents: "study analyse".
 std::string full_name(const CLI::App& command) {
   const CLI::App* parent = command.get_parent();
   const bool is_inner = parent != nullptr && parent->get_parent() != nullptr;
@@ -140,7 +140,7 @@ std::string about_error(const CLI::App& command, const CLI::ParseError& error) {
   const CLI::Option* option = command.get_option_no_throw(name);
   if (option == nullptr) return what;
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
-    // those that stand without a name are files
+    // positional arguments are files
     const std::string missing =
         option->nonpositional() ? name + " is missing" : full_name(command) + " needs a file";
     return fmt::format("{}: {}", missing, option->get_description());
@@ -171,7 +171,7 @@ std::string usage_sentence(const CLI::App& program, const CLI::ParseError& error
 }
 
 std::string help_page(const CLI::App& program, const std::string& command) {
-  // not App::help(), which gives the page of the command that was parsed: this one
+  // not App::help(), which returns the page of the command that was parsed: help itself
   if (command.empty())
     return program.get_formatter()->make_help(&program, "prostm", CLI::AppFormatMode::Normal);
   for (const CLI::App* known : program.get_subcommands({})) {

@@ -1,11 +1,11 @@
 // Receives prostm-stream/1 (docs/devices/stream.md), prints statistics and writes samples to files:
-// C++17 without dependencies, on Linux and on Windows. prostm_receiver.hpp lies beside it.
+// C++17 without dependencies, on Linux and on Windows. Needs prostm_receiver.hpp.
 //
 //   c++ -std=c++17 -O2 -pthread prostm_receiver.cpp -o prostm_receiver
 //   x86_64-w64-mingw32-g++ -std=c++17 -O2 -static prostm_receiver.cpp -o prostm_receiver.exe
 //   -lws2_32
 //
-// To drive an array, put its library's call into play().
+// To drive an array, call its library in play().
 
 #include "prostm_receiver.hpp"
 
@@ -17,7 +17,8 @@ namespace {
 
 using namespace prostm_receiver;
 
-/// Writes rows: as CSV, or for any other name as i64, i64, i32, f32 and four f32 per focal point.
+/// Writes one row per sample: as CSV if the name ends in .csv, else in binary as i64, i64, i32, f32
+/// and four f32 per focal point.
 class SampleFile {
  public:
   explicit SampleFile(const std::string& name, const char* first_column)
@@ -59,8 +60,7 @@ class SampleFile {
   std::FILE* file_;
 };
 
-/// Gets the output of the array, sample by sample, at about the time when it should sound. This is
-/// the place for the call of an array's library.
+/// Receives the output sample by sample, at about its play time. Call the library of an array here.
 void play(const Sample& sample, Ns handed, float gain, SampleFile& file) {
   file.row(handed, sample, gain);
 }
@@ -156,25 +156,25 @@ int main(int argc, char** argv) {
   };
   receiver.start();
 
-  // a library's callback would ask for times of its own; this asks for those that have come
+  // a library's callback would pass times of its own; this loop uses the times that are due
   const Ns step = 25'000 * options.settings.every, begin = now_ns();
   Ns time = begin, next_line = begin + 1000 * kMs;
-  bool sounds = false;
+  bool playing = false;
   while (interrupted == 0 && time - begin < static_cast<Ns>(options.seconds * 1e9)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     const Ns now = now_ns();
-    // after a sleep that was too long, the past is not played
+    // after too long a sleep, the missed samples are skipped
     if (now - time > 20 * kMs) time = now - step;
     while (time + step <= now) {
       time += step;
       Sample sample;
       const float gain = receiver.at(time, sample);
       sample.time = time;
-      if (sample.foci > 0) play(sample, now, gain, played);  // not before the first one came
-      if (sounds && gain == 0.0F)
+      if (sample.foci > 0) play(sample, now, gain, played);  // 0 before the first sample
+      if (playing && gain == 0.0F)
         std::printf("silent %.1f ms after the last message\n",
                     static_cast<double>(time - receiver.statistics().last_heard) / 1e6);
-      sounds = gain > 0.0F;
+      playing = gain > 0.0F;
     }
     if (now >= next_line) {
       print(receiver.statistics());

@@ -2,10 +2,9 @@
 // A receiver of prostm-stream/1 (docs/devices/stream.md) to be included, without dependencies:
 // C++17, on Linux and on Windows (link ws2_32, and call WSAStartup first).
 //
-// The class Receiver keeps the connection on a thread of its own and answers one question: what do
-// the focal points do at this time? It falls silent by itself when the stream stops. Call
-// Receiver::at() in the callback in which an array's library asks for focal points, or as
-// prostm_receiver.cpp does.
+// The class Receiver maintains the connection on its own thread. Receiver::at() returns the focal
+// points at a given time, and fades to silence when the stream stops. Call it in the callback in
+// which an array's library requests focal points, or in a loop as in prostm_receiver.cpp.
 
 #ifdef _WIN32
 #include <winsock2.h>
@@ -47,7 +46,7 @@ inline bool would_block() {
   const int e = WSAGetLastError();
   return e == WSAEWOULDBLOCK || e == WSAECONNRESET || e == WSAEMSGSIZE;
 }
-inline void do_not_wait(Socket s) {
+inline void set_non_blocking(Socket s) {
   u_long yes = 1;
   ioctlsocket(s, FIONBIO, &yes);
 }
@@ -62,7 +61,7 @@ inline bool would_block() {
   return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == EINPROGRESS ||
          errno == ECONNREFUSED;
 }
-inline void do_not_wait(Socket s) {
+inline void set_non_blocking(Socket s) {
   fcntl(s, F_SETFL, O_NONBLOCK);
 }
 const int kSendFlags = MSG_NOSIGNAL;
@@ -71,7 +70,7 @@ const int kSendFlags = MSG_NOSIGNAL;
 using Ns = std::int64_t;  // nanoseconds
 constexpr Ns kMs = 1'000'000;
 
-/// Time of this machine's steady clock.
+/// Returns the time of this machine's steady clock.
 inline Ns now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::steady_clock::now().time_since_epoch())
@@ -112,9 +111,9 @@ enum Kind : std::uint8_t {
 };
 constexpr std::size_t kHeader = 16;
 constexpr int kMostFoci = 8;
-constexpr std::int64_t kDatagram = 1200 - kHeader - 32;  // most bytes of samples in one
+constexpr std::int64_t kDatagram = 1200 - kHeader - 32;  // most bytes of samples in a datagram
 constexpr Ns kConcealed = 2'000'000;                     // longest gap that is concealed
-constexpr int kReadsAtOnce = 64;  // then it is looked whether the subscription must be renewed
+constexpr int kReadsAtOnce = 64;  // reads between two checks for a due renewal
 
 struct Focus {
   float x = 0, y = 0, z = 0;  ///< [m], from the array's centre, z away from it
@@ -122,7 +121,7 @@ struct Focus {
 };
 struct Sample {
   std::int64_t index = -1;
-  Ns time = 0;  ///< when it plays, by prostm's clock
+  Ns time = 0;  ///< play time, by prostm's clock
   int foci = 0;
   std::array<Focus, kMostFoci> focus;
 };
@@ -130,30 +129,30 @@ struct Sample {
 struct Settings {
   std::string host = "127.0.0.1", port = "7140";
   bool udp = false;
-  int foci = 0;                 ///< the first so many focal points; 0: all
-  int every = 1;                ///< every so many samples
+  int foci = 0;                 ///< number of focal points, from the first; 0: all
+  int every = 1;                ///< every n-th sample is sent
   bool shared = false;          ///< one intensity for all focal points of a sample
-  Ns silence_after = 20 * kMs;  ///< without a message, the output falls silent
-  Ns ramp = 5 * kMs;            ///< in this time
+  Ns silence_after = 20 * kMs;  ///< time without a message before the fade-out
+  Ns ramp = 5 * kMs;            ///< duration of a fade-out or fade-in
 };
 
 struct Statistics {
   std::int64_t samples = 0;    ///< received
-  std::int64_t lost = 0;       ///< not there at their play time
-  std::int64_t concealed = 0;  ///< lost ones that were interpolated
-  std::int64_t late = 0;       ///< came after their play time
-  std::int64_t skipped = 0;    ///< left out by prostm, because this side read too slowly
-  std::int64_t silences = 0;   ///< times when sound was ramped down because the stream stopped
-  std::int64_t malformed = 0;  ///< messages or samples that broke the protocol
+  std::int64_t lost = 0;       ///< missing at their play time
+  std::int64_t concealed = 0;  ///< lost samples that were interpolated
+  std::int64_t late = 0;       ///< arrived after their play time
+  std::int64_t skipped = 0;    ///< omitted by prostm because this receiver read too slowly
+  std::int64_t silences = 0;   ///< fade-outs because the stream was interrupted
+  std::int64_t malformed = 0;  ///< messages or samples that violated the protocol
   std::int64_t subscriptions = 0;
   double round_trip_ms = 0, offset_ms = 0, buffered_ms = 0;
-  std::int64_t last_heard = 0;  ///< [ns]
+  std::int64_t last_heard = 0;  ///< arrival of the last message [ns]
 };
 
 class Receiver {
  public:
-  /// Called on the receiver's thread with every sample, and with sentences about the connection.
-  /// on_sample must be quick: at() waits for it.
+  /// Called on the receiver's thread with every sample, and with messages about the connection.
+  /// on_sample must return quickly: at() waits for it.
   std::function<void(const Sample&)> on_sample;
   std::function<void(const std::string&)> on_event;
 
@@ -167,8 +166,9 @@ class Receiver {
     if (thread_.joinable()) thread_.join();
   }
 
-  /// The focal points at a time of this machine's steady clock, with the silence rule applied.
-  /// Times must rise from call to call. @return the factor in the intensities: 1 while all is well.
+  /// Computes the focal points at a time of this machine's steady clock, with the silence rule
+  /// applied. Times must increase from call to call. @return the gain that the intensities contain:
+  /// 1 if the stream is not interrupted.
   float at(Ns time, Sample& out);
   Statistics statistics() const;
 
@@ -178,15 +178,15 @@ class Receiver {
   void run();
   bool connect();
   void session();
-  bool ask(Ns now);
+  bool renew(Ns now);
   bool send(Kind kind, const std::uint8_t* body, std::size_t size);
   bool receive();
   bool take(const std::uint8_t* message, std::size_t size);
   void take_hello(const std::uint8_t* body);
   void take_block(const std::uint8_t* body, std::size_t size);
   void take_time(const std::uint8_t* body);
-  void forget();
-  void say(const std::string& sentence) {
+  void reset();
+  void report(const std::string& sentence) {
     if (on_event) on_event(sentence);
   }
   bool bridges(const Sample& last, const Sample& next) const;
@@ -198,22 +198,22 @@ class Receiver {
   std::thread thread_;
   std::atomic<bool> ending_{false};
 
-  // of the receiver's thread
+  // used only by the receiver's thread
   Socket socket_ = kNoSocket;
   std::vector<std::uint8_t> in_;
   std::uint32_t token_ = 0, session_ = 0, sequence_ = 0;
-  Ns asked_ = 0;
-  int asks_ = 0;
+  Ns requested_ = 0;
+  int requests_ = 0;
 
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the members below
   Statistics count_;
-  std::vector<Sample> ring_;  // sample i lies at (i / every) mod kRing
+  std::vector<Sample> ring_;  // sample i is at (i / every) mod kRing
   bool subscribed_ = false, stopped_ = false;
   double rate_ = 40e3;  // [Hz]
   std::int64_t newest_ = -1, played_ = -1;
-  std::int64_t rejected_ = -1;  // newest sample that broke the protocol
+  std::int64_t rejected_ = -1;  // newest sample that violated the protocol
   Ns heard_ = 0, best_trip_ = 0, best_at_ = 0;
-  double wanted_offset_ = 0, offset_ = 0;  // prostm's clock less this machine's [ns]
+  double wanted_offset_ = 0, offset_ = 0;  // prostm's clock minus this machine's [ns]
   bool has_offset_ = false;
   Sample held_;
   float gain_ = 0;
@@ -221,17 +221,17 @@ class Receiver {
   Ns last_at_ = 0;
 };
 
-/// True if the samples missing between two may be interpolated: at most one datagram's.
+/// Returns true if the samples missing between two may be interpolated: at most one datagram's.
 inline bool Receiver::bridges(const Sample& last, const Sample& next) const {
   const std::int64_t missing = (next.index - last.index) / settings_.every - 1;
   const auto period = static_cast<Ns>(1e9 / rate_) * settings_.every;
-  const bool wrong = last.index < rejected_ && rejected_ < next.index;  // and not lost
+  const bool wrong = last.index < rejected_ && rejected_ < next.index;  // rejected, not lost
   return !wrong && last.index >= 0 && last.foci == next.foci && missing * period <= kConcealed &&
          missing * last.foci * 16 <= kDatagram &&
          std::abs(next.time - last.time - (missing + 1) * period) <= period;
 }
 
-/// Returns the focal points of `last` moved by `share` of the way to those of `next`.
+/// Interpolates linearly between the focal points of `last` (share 0) and of `next` (share 1).
 inline Sample between(const Sample& last, const Sample& next, double share) {
   const auto mix = [s = static_cast<float>(share)](float a, float b) { return a + s * (b - a); };
   Sample out = last;
@@ -246,18 +246,18 @@ inline float Receiver::at(Ns time, Sample& out) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Ns step = last_at_ == 0 ? 0 : std::max<Ns>(0, time - last_at_);
   last_at_ = time;
-  // while it sounds, the clocks' difference is followed slowly, so that no sample is jumped over
+  // during output the clock offset is adjusted slowly, so that no sample is skipped
   const double change = gain_ == 0.0F ? 1e18 : 1e-3 * static_cast<double>(step);
   offset_ += std::min(change, std::max(-change, wanted_offset_ - offset_));
   const Ns at = time + static_cast<Ns>(offset_);
 
-  // on to the last sample whose time has come
+  // advance to the last sample that is due
   const Ns period = static_cast<Ns>(1e9 / rate_) * settings_.every;
   bool gap = false;
-  const Sample* coming = nullptr;  // the first that is here and not due
+  const Sample* coming = nullptr;  // the first received sample that is not due
   for (std::int64_t next = played_ + settings_.every; next <= newest_; next += settings_.every) {
     const Sample& sample = slot(next);
-    if (sample.index != next) continue;  // lost, or not here yet
+    if (sample.index != next) continue;  // lost, or not received yet
     if (sample.time > at) {
       coming = &sample;
       break;
@@ -275,10 +275,10 @@ inline float Receiver::at(Ns time, Sample& out) {
                       bridges(*sample, *coming);  // a gap to conceal
   const bool here = known && (inside || at < sample->time + period + period / 2);
   const bool fresh = std::max(time, now_ns()) - heard_ <= settings_.silence_after;
-  const bool stalled = step > settings_.ramp && step > 2 * period;  // the caller was away
+  const bool stalled = step > settings_.ramp && step > 2 * period;  // at() was called too late
   const bool good = here && fresh && !stalled && subscribed_ && !stopped_;
 
-  // the silence rule: after any interruption down to 0 where the focal points are, and up again
+  // the silence rule: after any interruption, fade out at the current positions, then fade in
   if ((!good || gap) && !falling_) {
     falling_ = true;
     ++count_.silences;
@@ -338,7 +338,7 @@ inline bool Receiver::connect() {
     setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, reinterpret_cast<const char*>(&yes), sizeof(yes));
   else
     setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, reinterpret_cast<const char*>(&room), sizeof(room));
-  do_not_wait(socket_);
+  set_non_blocking(socket_);
   if (::connect(socket_, list->ai_addr, static_cast<socklen_t>(list->ai_addrlen)) != 0 &&
       !would_block())
     return false;
@@ -354,24 +354,24 @@ inline bool Receiver::connect() {
          error == 0;
 }
 
-/// Receives until the connection ends, or nothing was heard for a second.
+/// Receives until the connection ends, or no message has arrived for a second.
 inline void Receiver::session() {
   in_.clear();
   token_ = 0;
-  asked_ = 0;
-  asks_ = 0;
+  requested_ = 0;
+  requests_ = 0;
   const Ns begin = now_ns();
-  bool goes_on = true;
-  while (!ending_ && goes_on) {
+  bool connected = true;
+  while (!ending_ && connected) {
     const Ns now = now_ns();
     const Ns heard = std::max(begin, heard_);
-    if (!ask(now) || now - heard > 1000 * kMs) return;
+    if (!renew(now) || now - heard > 1000 * kMs) return;
     fd_set ready;
     FD_ZERO(&ready);
     FD_SET(socket_, &ready);
     timeval limit{0, 5000};
     if (select(static_cast<int>(socket_) + 1, &ready, nullptr, nullptr, &limit) == 1)
-      goes_on = receive();
+      connected = receive();
   }
   if (!ending_) return;
   std::uint8_t body[8] = {};
@@ -379,13 +379,13 @@ inline void Receiver::session() {
   send(kBye, body, sizeof(body));
 }
 
-/// Renews the subscription and asks for the time, when it is time to; false if that fails.
-inline bool Receiver::ask(Ns now) {
-  // often at first, until the subscription stands and the clocks' difference is known
-  if (asks_ > 0 && now - asked_ < (asks_ < 10 ? 20 : 250) * kMs) return true;
-  asked_ = now;
+/// Renews the subscription and requests the time, if they are due; false on failure.
+inline bool Receiver::renew(Ns now) {
+  // often at first, until the subscription is confirmed and the clock offset is known
+  if (requests_ > 0 && now - requested_ < (requests_ < 10 ? 20 : 250) * kMs) return true;
+  requested_ = now;
   bool sent = true;
-  if (asks_ == 0 || settings_.udp) {
+  if (requests_ == 0 || settings_.udp) {
     std::uint8_t body[72] = {};
     put(body, token_, 4);
     body[4] = 1;  // samples
@@ -394,7 +394,7 @@ inline bool Receiver::ask(Ns now) {
     body[8] = settings_.shared ? 1 : 0;
     sent = send(kSubscribe, body, sizeof(body));
   }
-  ++asks_;
+  ++requests_;
   if (!subscribed_) return sent;
   std::uint8_t body[8];
   put(body, static_cast<std::uint64_t>(now_ns()), 8);
@@ -412,7 +412,7 @@ inline bool Receiver::send(Kind kind, const std::uint8_t* body, std::size_t size
   return sent >= 0 ? static_cast<std::size_t>(sent) == kHeader + size : would_block();
 }
 
-/// Reads what has arrived; false at the end of the connection.
+/// Reads the data that have arrived; false at the end of the connection.
 inline bool Receiver::receive() {
   std::uint8_t bytes[1 << 16];
   for (int i = 0; i < kReadsAtOnce; ++i) {
@@ -440,7 +440,7 @@ inline bool Receiver::receive() {
   return true;
 }
 
-/// Takes a whole message; false if it ends the subscription.
+/// Processes a complete message; false if it ends the subscription.
 inline bool Receiver::take(const std::uint8_t* message, std::size_t size) {
   const std::uint8_t* body = message + kHeader;
   const auto text = [&](std::size_t at) {
@@ -448,11 +448,11 @@ inline bool Receiver::take(const std::uint8_t* message, std::size_t size) {
                        size - std::min(at, size));
   };
   std::string event;
-  bool goes_on = true;
+  bool connected = true;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto session = get<std::uint32_t>(message + 8);
-    if (session != session_) forget();
+    if (session != session_) reset();
     session_ = session;
     heard_ = now_ns();
     switch (message[5]) {
@@ -478,15 +478,15 @@ inline bool Receiver::take(const std::uint8_t* message, std::size_t size) {
         break;
       case kEnd:
       case kError:
-        subscribed_ = goes_on = false;
+        subscribed_ = connected = false;
         event = (message[5] == kEnd ? "end: " : "error: ") + text(4);
         break;
       default:
-        break;  // a later version's message
+        break;  // a message of a later version
     }
   }
-  if (!event.empty()) say(event);
-  return goes_on;
+  if (!event.empty()) report(event);
+  return connected;
 }
 
 inline void Receiver::take_hello(const std::uint8_t* body) {
@@ -514,7 +514,7 @@ inline void Receiver::take_block(const std::uint8_t* body, std::size_t size) {
   count_.skipped = get<std::int64_t>(body + 24);
   const double period = 1e9 / rate_ * every;
   const Ns here = heard_ + static_cast<Ns>(offset_);
-  // samples of a stream that starts anew, or goes on after a pause longer than the buffer
+  // the stream restarts, or resumes after a gap longer than the buffer
   if (newest_ < 0 || first - newest_ > kRing * every / 2) played_ = newest_ = first - every;
   const std::uint8_t* at = body + 32;
   for (std::size_t i = 0; i < count; ++i) {
@@ -542,7 +542,7 @@ inline void Receiver::take_block(const std::uint8_t* body, std::size_t size) {
   }
 }
 
-/// Prefers the exchanges with the shortest way of the last seconds, whose error is the smallest.
+/// Uses the exchange with the shortest round trip of the last seconds: its error is the smallest.
 inline void Receiver::take_time(const std::uint8_t* body) {
   const Ns asked = get<std::int64_t>(body), received = get<std::int64_t>(body + 8),
            sent = get<std::int64_t>(body + 16);
@@ -557,8 +557,8 @@ inline void Receiver::take_time(const std::uint8_t* body) {
   has_offset_ = true;
 }
 
-/// prostm has started anew: its clock and its samples are others.
-inline void Receiver::forget() {
+/// Resets the state after a restart of prostm, which has a new clock and new sample indices.
+inline void Receiver::reset() {
   newest_ = played_ = rejected_ = -1;
   has_offset_ = subscribed_ = stopped_ = false;
   for (Sample& sample : ring_) sample.index = -1;

@@ -3,9 +3,9 @@
 
     python3 prostm_receiver.py [ADDRESS:PORT] [--udp] [--seconds S] …
 
-The class Receiver keeps the subscription and hands out the samples whose time has come. It falls silent by itself when
-the stream stops. To drive an array, pass a function of your own as `play`. main() prints statistics and writes samples
-to files.
+The class Receiver maintains the subscription and outputs each sample at its play time. It fades to silence when the
+stream stops. To drive an array, pass a function of your own as `play`. main() prints statistics and writes samples to
+files.
 """
 
 import argparse
@@ -35,16 +35,16 @@ FOCUS_BYTES = 16  # x, y, z [m] and the intensity 0..1, each a float
 WANT_SAMPLES = 1
 
 MS = 1_000_000  # ns
-DATAGRAM = 1200 - HEADER.size - BLOCK_HEAD.size  # most bytes of samples in one
+DATAGRAM = 1200 - HEADER.size - BLOCK_HEAD.size  # most bytes of samples in a datagram
 CONCEALED = 2 * MS  # longest gap that is concealed
 READS_AT_ONCE = 64
 RENEW_EVERY = 250 * MS
-STALL = 20 * MS  # between two calls of step()
-GONE_AFTER = 1000 * MS  # without a message the connection is made anew
+STALL = 20 * MS  # longest time between two calls of step() without a restart of the output
+GONE_AFTER = 1000 * MS  # time without a message before it reconnects
 
 
 class Block:
-    """Samples in a row: `data` has four floats for each focal point of each sample."""
+    """Consecutive samples: `data` has four floats for each focal point of each sample."""
 
     def __init__(self, index, play_time, stride, foci, data):
         self.index, self.time, self.stride, self.foci, self.data = index, play_time, stride, foci, data
@@ -58,11 +58,11 @@ class Block:
 
 
 class Receiver:
-    """Call step() about once a millisecond.
+    """Receives a stream and plays it; call step() about once a millisecond.
 
-    play(time_ns, gain, foci, sample) gets the output, sample by sample: the time by this machine's steady clock
-    (time.perf_counter_ns), the factor that is in the intensities (1 while all is well), the number of focal points and
-    four floats for each: x, y, z [m] and the intensity 0..1.
+    play(time_ns, gain, foci, sample) is called for each output sample, with the time by this machine's steady clock
+    (time.perf_counter_ns), the gain that the intensities contain (1 if the stream is not interrupted), the number of
+    focal points, and four floats for each: x, y, z [m] and the intensity 0..1.
     """
 
     def __init__(self, host, port, udp=False, foci=0, every=1, shared=False, silence_after=20 * MS, ramp=5 * MS,
@@ -78,17 +78,17 @@ class Receiver:
         self.round_trip = 0
         self.socket, self.session, self.sequence, self.heard = None, 0, 0, 0
         self.tried = -GONE_AFTER
-        self.offset = self.wanted_offset = 0.0  # prostm's clock less this machine's [ns]
+        self.offset = self.wanted_offset = 0.0  # prostm's clock minus this machine's [ns]
         self.gain, self.falling, self.held, self.last = 0.0, True, None, 0
-        self.forget()
+        self.reset()
 
-    def forget(self):
-        """prostm has started anew: its clock and its samples are others."""
+    def reset(self):
+        """Resets the state after a restart of prostm, which has a new clock and new sample indices."""
         self.subscribed = self.stopped = self.has_offset = False
-        self.blocks = []  # by index
-        self.next_index = None  # index of the sample that plays next
-        self.next_time = 0  # its time by prostm's clock
-        self.rejected = -1  # index of the newest sample that broke the protocol
+        self.blocks = []  # sorted by index
+        self.next_index = None  # index of the next sample to play
+        self.next_time = 0  # its play time by prostm's clock
+        self.rejected = -1  # index of the newest sample that violated the protocol
         self.best_trip, self.best_at = 0, 0
         self.rate = 40e3
 
@@ -113,7 +113,7 @@ class Receiver:
             return
         link.setblocking(False)
         self.socket, self.unread = link, b""
-        self.token, self.asked, self.asks = 0, 0, 0
+        self.token, self.requested, self.requests = 0, 0, 0
         self.opened = time.perf_counter_ns()
 
     def disconnect(self):
@@ -136,26 +136,26 @@ class Receiver:
         except OSError:
             self.disconnect()
 
-    def ask(self, now):
-        """Renews the subscription and asks for the time, often at first."""
-        if self.asks > 0 and now - self.asked < (20 * MS if self.asks < 10 else RENEW_EVERY):
+    def renew(self, now):
+        """Renews the subscription and requests the time, often at first."""
+        if self.requests > 0 and now - self.requested < (20 * MS if self.requests < 10 else RENEW_EVERY):
             return
-        self.asked = now
-        if self.asks == 0 or self.udp:
+        self.requested = now
+        if self.requests == 0 or self.udp:
             self.send(SUBSCRIBE, SUBSCRIBE_BODY.pack(self.token, WANT_SAMPLES, self.foci, self.every, int(self.shared)))
-        self.asks += 1
+        self.requests += 1
         if self.subscribed and self.socket is not None:
             self.send(TIME_REQUEST, REQUEST_BODY.pack(time.perf_counter_ns()))
 
     def step(self, wait=0.001):
-        """Sends what is due, receives for at most `wait` seconds, and plays what is due."""
+        """Sends due messages, receives for at most `wait` seconds, and plays the samples that are due."""
         now = time.perf_counter_ns()
         if self.socket is None:
             self.connect(now)
         if self.socket is None:
             time.sleep(wait)
         else:
-            self.ask(now)
+            self.renew(now)
         if self.socket is not None and select.select([self.socket], [], [], wait)[0]:
             self.receive()
         if self.socket is not None and time.perf_counter_ns() - max(self.opened, self.heard) > GONE_AFTER:
@@ -163,7 +163,7 @@ class Receiver:
         self.play_due(time.perf_counter_ns())
 
     def receive(self):
-        """Takes the messages that have arrived, not so many that the renewal is forgotten."""
+        """Processes the received messages, at most READS_AT_ONCE reads so that renewals are not delayed."""
         for _ in range(READS_AT_ONCE):
             if self.socket is None:
                 return None
@@ -190,7 +190,7 @@ class Receiver:
                 return None
             body, self.unread = self.unread[HEADER.size:HEADER.size + size], self.unread[HEADER.size + size:]
             if session != self.session:
-                self.forget()
+                self.reset()
             self.session, self.heard = session, time.perf_counter_ns()
             try:
                 self.take(kind, body)
@@ -227,7 +227,7 @@ class Receiver:
             self.offset = self.wanted_offset = float(sent - self.heard)
 
     def take_time(self, asked, received, sent):
-        """Prefers the exchanges with the shortest way of the last seconds, whose error is the smallest."""
+        """Uses the exchange with the shortest round trip of the last seconds, which has the smallest error."""
         trip = (self.heard - asked) - (sent - received)
         if not 0 <= trip <= 1000 * MS:
             return
@@ -261,7 +261,7 @@ class Receiver:
             self.counts["late"] += count
         block = Block(index, play_time, stride, foci, data)
         self.on_block(block)
-        # datagrams may change places
+        # datagrams may arrive out of order
         bisect.insort(self.blocks, block, key=lambda b: b.index)
 
     # the output
@@ -270,12 +270,12 @@ class Receiver:
         return round(1e9 / self.rate * self.every)
 
     def play_due(self, now):
-        """Plays up to a time of this machine's clock, with the silence rule applied."""
-        # while it sounds, the clocks' difference is followed slowly, so that no sample is jumped over
+        """Plays all samples up to a time of this machine's clock, with the silence rule applied."""
+        # during output the clock offset is adjusted slowly, so that no sample is skipped
         change = 1e-3 * (now - self.last) if self.gain > 0.0 else math.inf
         self.offset += min(change, max(-change, self.wanted_offset - self.offset))
         until = now + self.offset
-        if now - self.last > STALL and self.held is not None:  # this program was away: the past is not played
+        if now - self.last > STALL and self.held is not None:  # step() was not called for too long: skip
             if self.next_index is not None:
                 self.interrupt()
             self.gain, self.next_time = 0.0, until
@@ -293,7 +293,7 @@ class Receiver:
             self.fall(until)
 
     def conceal(self, until):
-        """Fills a gap as long as one datagram, where it is due, on straight lines between the samples around it."""
+        """Fills a due gap of at most one datagram by linear interpolation between the samples around it."""
         after, period = self.blocks[0], self.period()
         if self.next_index is None or self.next_time > until:
             return
@@ -304,7 +304,7 @@ class Receiver:
             return
         if abs(after.time - gap - self.next_time) > period:  # the play times jump
             return
-        if self.next_index <= self.rejected < after.index:  # not lost, but wrong
+        if self.next_index <= self.rejected < after.index:  # rejected, not lost
             return
         first, data = after.sample(0), array("f")
         for i in range(1, missing + 1):
@@ -315,21 +315,21 @@ class Receiver:
         self.counts["concealed"] += missing
 
     def play_block(self, until):
-        """Plays the due samples of the first block; false when there are more, whose time has not come."""
+        """Plays the due samples of the first block; false if some of its samples are not due yet."""
         block, period = self.blocks[0], self.period()
         if self.next_index is None:
-            if self.gain > 0.0:  # first down to 0
+            if self.gain > 0.0:  # finish the fade-out first
                 self.fall(until)
             if self.gain > 0.0:
                 return False
-            begin = max(0, math.ceil((until - block.time) / period) - 1)  # what is over stays silent
+            begin = max(0, math.ceil((until - block.time) / period) - 1)  # past samples are skipped
             if begin >= block.count:
                 self.blocks.pop(0)
                 return True
             self.falling = False
         else:
             begin = (self.next_index - block.index) // block.stride
-            if begin >= block.count:  # had already
+            if begin >= block.count:  # already played
                 self.blocks.pop(0)
                 return True
             time_of_next = block.time + begin * period
@@ -350,7 +350,7 @@ class Receiver:
         return True
 
     def interrupt(self):
-        """From now on the focal points stand where they are, and their intensity falls to 0."""
+        """Starts a fade-out: the focal points stay at their positions while their intensity falls to 0."""
         self.counts["silences"] += 1
         self.falling, self.next_index = True, None
 
@@ -375,7 +375,7 @@ class Receiver:
 
 
 class SampleFile:
-    """Writes rows: as CSV, or for any other name as i64, i64, i32, f32 and four f32 per focal point."""
+    """Writes one row per sample: CSV if the name ends in .csv, else i64, i64, i32, f32 and four f32 per focal point."""
 
     ROW = struct.Struct("<qqif")
 
@@ -404,14 +404,14 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("address", nargs="?", default="127.0.0.1:7140", help="where prostm serves; default %(default)s")
     parser.add_argument("--udp", action="store_true", help="subscribe over UDP, not TCP")
-    parser.add_argument("--foci", type=int, default=0, choices=range(9), help="the first so many focal points; 0: all")
-    parser.add_argument("--every", type=int, default=1, help="every so many samples, 1 to 1000")
+    parser.add_argument("--foci", type=int, default=0, choices=range(9), help="number of focal points; 0: all")
+    parser.add_argument("--every", type=int, default=1, help="receive every N-th sample, 1 to 1000")
     parser.add_argument("--shared", action="store_true", help="one intensity for all focal points of a sample")
     parser.add_argument("--silence-ms", type=float, default=20.0,
-                        help="without a message for so long, the output falls silent")
+                        help="time without a message after which the output falls silent")
     parser.add_argument("--seconds", type=float, default=math.inf)
-    parser.add_argument("--received", metavar="FILE", help="writes what came in (.csv, or binary)")
-    parser.add_argument("--played", metavar="FILE", help="writes what went out, with the silence rule applied")
+    parser.add_argument("--received", metavar="FILE", help="write the received samples (.csv, or binary)")
+    parser.add_argument("--played", metavar="FILE", help="write the played samples, with the silence rule applied")
     given = parser.parse_args()
     if not 1 <= given.every <= 1000:
         parser.error("--every must be 1 to 1000")
@@ -433,7 +433,7 @@ def main():
                 received.row(block.index + index, block.time + round(index * period), block.foci, 1.0, block.sample(i))
 
     def play(at, gain, foci, sample):
-        # the place for the call of an array's library
+        # call the library of an array here
         played.row(time.perf_counter_ns(), at, foci, gain, sample)
         if gain == 0.0:
             print(f"silent {(at - receiver.heard) / MS:.1f} ms after the last message", flush=True)

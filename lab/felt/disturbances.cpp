@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kDraws = 4;
 
-/// Begins a path at the point that is nearest before this share of its length.
+/// Begins a path at the last point before this share of its length.
 void begin_at(FocalPath& path, double share) {
   double along = 0.0;
   std::size_t first = 0;
@@ -29,7 +29,7 @@ void begin_at(FocalPath& path, double share) {
   std::rotate(path.pressure.begin(), path.pressure.begin() + by, path.pressure.end());
 }
 
-/// Plays the plan itself where it has no phases to lose.
+/// Returns the plan itself if it has no phases to randomise.
 std::vector<Play> with_random_phases(const Plan& plan, double size, std::uint64_t seed) {
   const bool in_phase = std::all_of(plan.foci.begin(), plan.foci.end(),
                                     [](const FocalPoint& f) { return f.phase == 0.0; });
@@ -64,7 +64,7 @@ Play with_wrong_pressures(Plan plan, double size, std::uint64_t seed) {
   return {plan};
 }
 
-/// Plays the plan itself where its paths already go round on their own.
+/// Returns the plan itself if its paths already have periods of their own.
 Play with_own_periods(Plan plan, const TargetField& target) {
   if (plan.loop == 0.0) return {};
   plan.loop = 0.0;

@@ -12,9 +12,9 @@
 
 namespace prostm::bench {
 
-/// A plan that is played, and where the hand is then.
+/// A plan that is played, and the displacements of the hand.
 struct Play {
-  std::optional<Plan> plan;                   ///< in place of the judged plan; none: that itself
+  std::optional<Plan> plan;                   ///< nothing: the judged plan itself
   std::vector<Vec2> shifts = {Vec2::Zero()};  ///< of the hand in its plane [m]
 };
 
@@ -31,9 +31,9 @@ struct DisturbanceSizes {
   double pressure = 0.1;  ///< standard deviation, as a share of each pressure
 };
 
-/// Returns: start phases drawn at random, four times; the hand displaced, in eight directions; each
-/// pressure off by a random share; own periods. Foci without phases keep one phase. In "own
-/// periods" each path goes round on its own, at the planner's speed.
+/// Returns four disturbances: random start phases, four times; the hand displaced, in eight
+/// directions; a random relative error of each pressure; own periods. Foci without phases keep one
+/// phase. In "own periods" each path has a period of its own, at the planner's speed.
 std::vector<Disturbed> felt_disturbances(const DisturbanceSizes& sizes = {});
 
 }  // namespace prostm::bench

@@ -41,7 +41,7 @@ std::vector<NamedField> generated(const Kinds& kinds, std::uint64_t first_seed, 
   return out;
 }
 
-/// Smoke of four jets on the study's hand, once it has settled.
+/// Returns fields of four jets of smoke on the study hand, after the flow has settled.
 std::vector<NamedField> plumes() {
   constexpr double kStep = 0.02;                          // [s]
   constexpr int kSettle = 250, kApart = 30, kFields = 4;  // [steps]

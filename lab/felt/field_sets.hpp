@@ -11,7 +11,7 @@
 
 namespace prostm::bench {
 
-/// Tuning: the twelve kinds of fields::kFeltKinds, for choosing settings; it judges nothing.
+/// Tuning: the twelve kinds of fields::kFeltKinds, only for choosing settings, not for judging.
 /// Gallery: three frames of each generated sequence. Scout: the twelve kinds with other seeds.
 /// Plumes: four moments of the scene four-plumes on the study's hand. New: eight kinds that are in
 /// no other set, three seeds each.
@@ -32,7 +32,7 @@ struct NamedField {
   TargetField field;
 };
 
-/// Makes a set. @param most so many of its fields, evenly chosen; 0: all. Plumes takes half a
+/// Makes a set. @param most number of its fields, evenly chosen; 0: all. Plumes takes half a
 /// minute.
 std::vector<NamedField> field_set(SetName set, int most = 0);
 

@@ -44,7 +44,7 @@ int long_paths_of(const Plan& plan, const TargetField& target) {
   return count;
 }
 
-/// One thread's judges, one for each raster, so that what they computed for it is kept.
+/// One thread's judges, one for each raster, so that results for a raster are reused.
 class Judges {
  public:
   Judges(const TransducerArray& array, const std::vector<Skin>& skins,
@@ -76,7 +76,7 @@ class Judges {
   std::list<OnRaster> all_;
 };
 
-/// The names that a judgement depends on.
+/// Names of the skins and disturbances that a judgement depends on.
 std::vector<std::string> names_of(const std::vector<Skin>& skins,
                                   const std::vector<Disturbed>& disturbances, bool is_control) {
   std::vector<std::string> out;

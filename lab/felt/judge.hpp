@@ -1,5 +1,5 @@
 #pragma once
-/// Judges plans by the array's own field, and by what skins feel of it.
+/// Judges plans by the array's own field, and by its percept on several skins.
 
 #include <array>
 #include <cstdint>
@@ -34,7 +34,7 @@ class Judge {
   Judge(const TransducerArray& array, const TargetField& raster, const std::vector<Skin>& skins,
         const std::vector<Disturbed>& disturbances);
 
-  /// @param seed of random disturbances. @param is_control not disturbed.
+  /// @param seed of random disturbances. @param is_control whether to skip disturbances.
   /// @throws InputError as Player::play() does.
   Judged judge(const Plan& plan, const TargetField& target, std::uint64_t seed,
                bool is_control = false);
@@ -54,9 +54,9 @@ using Results = std::vector<std::vector<Judged>>;
 
 class Kept;
 
-/// Judges all ways on all fields, several fields at once. @param threads ≥ 1. @param kept
-/// judgements that need not be made again; new ones are added and written. @throws InputError as
-/// Judge::judge() does, with the field's and the way's name.
+/// Judges all ways on all fields, several fields at once. @param threads ≥ 1. @param kept cache of
+/// earlier judgements; new ones are added and written. @throws InputError as Judge::judge() does,
+/// with the names of the field and the way.
 Results judge_all(const TransducerArray& array, const std::vector<NamedField>& fields,
                   const std::vector<Way>& ways, const std::vector<Skin>& skins,
                   const std::vector<Disturbed>& disturbances, int threads, Kept& kept);

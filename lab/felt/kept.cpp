@@ -118,7 +118,7 @@ Kept::Kept(std::string path) : path_(std::move(path)) {
     for (const auto& [key, one] : document.at("judged").items())
       all_.emplace(key, judged_from_json(one));
   } catch (const nlohmann::json::exception&) {
-    throw InputError(path_ + ": is no file of kept judgements; remove it or name another");
+    throw InputError(path_ + ": is not a file of kept judgements; remove it or name another");
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Judgements that are kept in a file, since the same plans are judged again and again.
+/// A cache of judgements in a file, since the same plans are judged again and again.
 
 #include <cstdint>
 #include <map>
@@ -12,13 +12,13 @@
 
 namespace prostm::bench {
 
-/// Judgements by a key that stands for the plan, the target, and what else decides the scores but
-/// for the program itself: the file is to be removed when emission, acoustics or skin change. The
-/// map Judged::percept is not kept. Serves several threads.
+/// Judgements by a key of the plan, the target and everything else that determines the scores,
+/// except the program itself: remove the file when emission, acoustics or skin change. The map
+/// Judged::percept is not stored. Thread-safe.
 class Kept {
  public:
-  /// @param path of the file, which need not exist; empty: nothing is kept. @throws InputError for
-  /// a file that is not one of these.
+  /// @param path of the file, which need not exist; empty: nothing is stored. @throws InputError
+  /// for a file of another kind.
   explicit Kept(std::string path);
 
   std::optional<Judged> find(const std::string& key) const;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kCells = 54;               // per edge of the raster; each of 3 mm
 constexpr int kPlans = 25, kFirst = 40;  // of a run; frame of the first target
-constexpr std::size_t kLookedApart = 6;  // of the plans that are judged as loops, too
+constexpr std::size_t kLookedApart = 6;  // number of plans that are also judged as loops
 
 /// Judges some plans of the second half of a run as loops: those of the run, and plans made alone.
 void judge_loops(const TransducerArray& array, const Way& way, const std::vector<LivePlan>& plans,
@@ -45,7 +45,7 @@ LiveScores score_run(const TransducerArray& array, const LiveSequence& sequence,
   judge_loops(array, way, plans, out);
   LiveSettings settings;
   settings.emit.foci = static_cast<int>(foci);
-  settings.emit.power_limit = static_cast<double>(foci);  // that the array holds is what bounds it
+  settings.emit.power_limit = static_cast<double>(foci);  // only the array limits the power
   const auto method = plans[0].plan.foci.empty() ? Method::ProStm : Method::Am;
   WorkerPool pool(1);
   LiveFelt felt;
@@ -66,7 +66,7 @@ double mean(const std::vector<LiveScores>& scores, double LiveScores::*value) {
   return sum / static_cast<double>(scores.size());
 }
 
-/// @param left share of the gain as a loop that is left live; shown if there is such a gain.
+/// @param left share of the gain as a loop that remains live; shown if there is such a gain.
 std::string line(const std::vector<LiveScores>& own, const std::vector<LiveScores>& first) {
   const auto of = [&](double LiveScores::*value) { return mean(own, value); };
   const auto more = [&](double LiveScores::*value) { return of(value) - mean(first, value); };

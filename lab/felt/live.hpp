@@ -1,5 +1,5 @@
 #pragma once
-/// Live runs: plans that take over from one another every 40 ms, and what is felt of them.
+/// Live runs: plans that replace one another every 40 ms, and their percept.
 
 #include <string>
 #include <vector>
@@ -17,16 +17,16 @@ struct LiveSequence {
   std::vector<TargetField> targets;
 };
 
-/// Returns five generated sequences of a second, moving. @param is_still every target is the first
-/// one. @param most so many of them; 0: all.
+/// Returns five generated, moving sequences of a second. @param is_still whether every target is
+/// the first one. @param most number of them; 0: all.
 std::vector<LiveSequence> live_sequences(bool is_still, int most = 0);
 
 /// The scores of one way on one sequence: S_8.5 of the map √e on the nominal skin.
 struct LiveScores {
-  double alone = 0.0;   ///< plans for one target alone, played on and on; the mean of several
-  double loop = 0.0;    ///< the same of plans of the live run
-  double live = 0.0;    ///< the whole run after it has settled, against the mean target
-  double window = 0.0;  ///< each 40 ms of that, against the target that was then planned; the mean
+  double alone = 0.0;      ///< plans for one target alone, repeated endlessly; mean of several
+  double loop = 0.0;       ///< the same for plans of the live run
+  double live = 0.0;       ///< the whole run after it has settled, against the mean target
+  double window = 0.0;     ///< mean over its windows of 40 ms, each against its own target
   double intensity = 0.0;  ///< √E of the run [m]
   double faded = 0.0;      ///< share of samples in a fade
 };
@@ -44,7 +44,7 @@ LiveSet score_live(const std::string& name, const TransducerArray& array,
                    const std::vector<LiveSequence>& sequences, const std::vector<Way>& ways,
                    int threads);
 
-/// Prints a table, a line for each way. @param each and one for each sequence, too.
+/// Prints a table with a line for each way. @param each whether to add one for each sequence.
 void print_live(const LiveSet& set, bool each);
 /// Adds the distributions of lack, live and as loops, for every way.
 void add_live_rows(const LiveSet& set, std::vector<Row>& rows);

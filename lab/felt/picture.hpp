@@ -1,5 +1,5 @@
 #pragma once
-/// A picture of what is felt of some fields.
+/// A picture of the percepts of some fields.
 
 #include <string>
 #include <vector>

@@ -11,7 +11,7 @@
 namespace prostm::bench {
 namespace {
 
-/// A model of the skin that is prepared anew only when the loop's period changes.
+/// A model of the skin that is prepared again only when the loop's period changes.
 template <class Model>
 class Prepared {
  public:
@@ -65,7 +65,7 @@ std::vector<double> displacement(const SkinMotion& motion) {
   return out;
 }
 
-/// Largest |w| of a cell, looked at eight times in a period of the highest harmonic.
+/// Returns the largest |w| of each cell, sampled eight times per period of the highest harmonic.
 std::vector<double> peaks(const SkinMotion& motion) {
   const int harmonics = motion.harmonics(), times = fast_length(8 * harmonics);
   std::vector<std::complex<double>> spectrum(static_cast<std::size_t>(times)), course(spectrum);

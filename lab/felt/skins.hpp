@@ -1,5 +1,5 @@
 #pragma once
-/// Skins that feel a loop of pressure, and the maps that come of their motion.
+/// Skins that move under a loop of pressure, and maps of their motion.
 
 #include <array>
 #include <functional>
@@ -11,11 +11,11 @@
 
 namespace prostm::bench {
 
-/// Returns the motion of a whole raster under a loop of pressure; it lasts until the next call.
+/// Returns the motion of a whole raster under a loop of pressure, valid until the next call.
 using FeelLoop = std::function<const SkinMotion&(const PressureLoop&)>;
 
-/// A skin that can lie under any raster: under its cells, and its mask. A FeelLoop keeps what it
-/// computed for a period, and serves one thread.
+/// A skin that can be placed under any raster: its cells and its mask. A FeelLoop reuses its
+/// results for a period, and serves one thread.
 struct Skin {
   std::string name;
   std::function<FeelLoop(const TargetField& raster)> under;

@@ -1,5 +1,5 @@
 #pragma once
-/// Tables of what was judged.
+/// Tables of judgements.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace prostm::bench {
 
-/// Everything that was judged of one set of fields. Ways are compared with the first of them.
+/// All judgements on one set of fields. Ways are compared with the first of them.
 struct JudgedSet {
   std::string name;
   std::vector<std::string> fields, ways, skins, disturbances;

@@ -13,7 +13,7 @@
 namespace prostm::bench {
 namespace {
 
-/// Plans with one planner of this type after the other.
+/// Returns a way that plans one target after the other with a planner of this type.
 template <class AnyPlanner, class Settings>
 Planning planning_with(const Settings& settings, const TargetField& first) {
   const auto planner = std::make_shared<AnyPlanner>(settings, first.size());
@@ -25,7 +25,7 @@ Planning planning_with(const Settings& settings, const TargetField& first) {
   };
 }
 
-/// Changes each plan of a way.
+/// Returns a way that changes each plan of another way.
 template <class Change>
 Way changed(const std::string& name, const Way& way, bool is_control, const Change& change) {
   return {name,
@@ -59,7 +59,7 @@ Way am(const std::string& name, int foci, const TransducerArray& array, double s
           }};
 }
 
-/// Each path's pressures in a random order.
+/// Returns the plan with each path's pressures in a random order.
 Plan with_shuffled_pressures(Plan plan) {
   Random random(1);
   for (FocalPath& path : plan.paths) random.shuffle(path.pressure);

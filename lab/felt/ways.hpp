@@ -1,5 +1,5 @@
 #pragma once
-/// The ways to plan that are judged by what is felt of them.
+/// The ways to plan whose percepts are judged.
 
 #include <functional>
 #include <string>
@@ -17,10 +17,10 @@ using Planning = std::function<Plan(const TargetField&)>;
 /// A way to turn targets into plans.
 struct Way {
   std::string name;
-  /// Begins with the target of the first plan, for whose place the focus is measured. May be called
-  /// by several threads at once.
+  /// Starts planning; the width of the focus is measured at the place of the first target. May be
+  /// called by several threads at once.
   std::function<Planning(const TargetField& first)> begin;
-  bool is_control = false;  ///< must lose; not disturbed
+  bool is_control = false;  ///< a control, which must lose and is not disturbed
 
   /// Plans for one target alone.
   Plan plan(const TargetField& target) const { return begin(target)(target); }

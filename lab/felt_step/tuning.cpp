@@ -13,7 +13,7 @@ namespace {
 
 using planning::FeltTuning;
 
-/// A number of the tuning, and how to multiply it.
+/// A number of the tuning, and a function that multiplies it.
 struct Knob {
   const char* name;
   bool of_points;  ///< matters only where points move

@@ -1,6 +1,5 @@
 #pragma once
-/// The numbers of the felt step, each halved and doubled: what is felt of the plans, and their
-/// cost.
+/// The numbers of the felt step, each halved and doubled: quality of the percept, and cost.
 
 #include <string>
 #include <vector>
@@ -15,13 +14,13 @@ struct TuningVariant {
   planning::FeltTuning tuning;
 };
 
-/// The tuning that is used, and those with one number changed. @param points whether numbers count
-/// that matter only where points move.
+/// Returns the tuning in use, and those with one number changed. @param points whether to include
+/// numbers that matter only if points move.
 std::vector<TuningVariant> tuning_variants(bool points);
 
 /// Plans generated fields, one after the other and each twice, the second time displaced by 1 mm,
 /// so that a plan continues another one; appends the lack (W3) and the time of a plan.
-/// @param fields number of fields. @param points whether what is felt moves points, too.
+/// @param fields number of fields. @param points whether the felt step also moves points.
 void compare_tunings(int fields, bool points, std::vector<Row>& rows);
 
 }  // namespace prostm::bench

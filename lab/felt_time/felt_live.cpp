@@ -14,7 +14,7 @@
 namespace prostm::bench {
 namespace {
 
-constexpr double kBlock = 1e-3;  // that a device asks for at a time [s]
+constexpr double kBlock = 1e-3;  // block that a device requests at a time [s]
 
 double largest_pressure(const Plan& plan) {
   double largest = 0.0;

@@ -1,5 +1,5 @@
 #pragma once
-/// The percept of plans that take over from one another while they are played.
+/// The percept of plans that replace one another while they are played.
 
 #include <functional>
 #include <span>
@@ -16,7 +16,7 @@
 
 namespace prostm::bench {
 
-/// A plan, and the target that it was made for.
+/// A plan, and its target.
 struct LivePlan {
   Plan plan;
   TargetField target;
@@ -25,8 +25,8 @@ struct LivePlan {
 struct LiveSettings {
   /// Without a full scale, the largest pressure of all plans is intensity 1.
   EmitSettings emit;
-  /// Without a full scale, it is the least that the array holds over the loops of five of the
-  /// plans.
+  /// Without a full scale, it is the lowest that the array can sustain over the loops of five of
+  /// the plans.
   LoopDriveSettings drives;
   double sample_rate = 40e3;  ///< [Hz]
   double interval = 0.040;    ///< time between plans [s], whole ms
@@ -39,9 +39,9 @@ struct LiveFelt {
   Metrics metrics;                  ///< of the percept against the mean target
   double intensity = 0.0;           ///< √(∫ e dA / A_0) [m], as (S8) if nothing is below 57 Hz
   std::vector<double> window_percept;  ///< √e [m] of each kFeltWindow, rows·cols each
-  std::vector<double> window_skill_8;  ///< of each window against the target that was then planned
+  std::vector<double> window_skill_8;  ///< of each window against the target planned at the time
   EmitStats emit;
-  std::int64_t short_samples = 0;  ///< weaker than asked for
+  std::int64_t short_samples = 0;  ///< samples weaker than requested
 };
 
 /// Plays plans one after the other with the emitter of `method`, computes the pressure of the array

@@ -18,13 +18,13 @@ using Complex = std::complex<double>;
 constexpr double kWaveNumberStep = 4.0;  // [rad/m]: a copy of each load every 1.6 m
 constexpr double kRinging = 0.2;         // time for which a response is stepped [s]
 constexpr double kWindow = 0.4;          // period of the filtered response [s]
-constexpr int kTicks = 2000;             // of that
+constexpr int kTicks = 2000;             // ticks in that period
 constexpr int kAhead = 500;              // ticks by which the filter looks ahead
 constexpr int kBins = 400;               // frequencies 1/kWindow apart, up to 1 kHz
 constexpr int kBlock = 4096;             // ticks of a transform in time
-constexpr int kNew = kBlock - kTicks;    // of which so many are new
+constexpr int kNew = kBlock - kTicks;    // new ticks of a block
 
-/// Returns the response to a blow of the pattern of wave number k, filtered: transforms at the
+/// Returns the filtered response to an impulse of the pattern of wave number k: transforms at the
 /// frequencies 1, 2, … kBins over kWindow.
 std::vector<Complex> felt_blow(const SkinModel& model, double k, Eigen::FFT<double>& fft) {
   const double longest = std::min(2e-5, 0.06 / (k * model.settings().fast_speed));
@@ -108,7 +108,7 @@ void TimeSkin::make_kernels(const SkinModel& model) {
       spectra[mode * kTicks + static_cast<std::size_t>(j + 1)] = plane[c];
     }
   }
-  // to times, from kAhead before the blow to the window's end; back to the spectrum of a block
+  // to times, from kAhead before the impulse to the window's end; back to the spectrum of a block
   Eigen::FFT<double> fft;
   std::vector<Complex> course(kTicks), padded(kBlock), transform(kBlock);
   for (std::size_t mode = 0; mode < modes; ++mode) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The percept of a pressure that need not repeat: the skin stepped in time.
+/// The percept of a pressure that need not be periodic: the skin stepped in time.
 
 #include <complex>
 #include <cstddef>
@@ -14,12 +14,12 @@ namespace prostm::bench {
 
 /// Time between samples of pressure and of what is felt [s].
 inline constexpr double kFeltTick = 0.2e-3;
-/// Time over which a running percept is the mean [s].
+/// Averaging time of a running percept [s].
 inline constexpr double kFeltWindow = 0.040;
 
 /// The half-space of (S1) to (S5) under any course of pressure on a raster. Its impulse response is
 /// stepped by SkinStepper, (S12), for wave numbers 4 rad/m apart, and passed through the
-/// sensitivity s(f) of (S6) as a filter up to 1 kHz that does not pass a mean. Displacements of
+/// sensitivity s(f) of (S6) as a filter up to 1 kHz that removes the mean. Displacements of
 /// skin are convolutions with that, as in (S9), but in time too.
 class TimeSkin {
  public:

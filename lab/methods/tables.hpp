@@ -9,7 +9,7 @@
 namespace prostm::bench {
 
 /// Renders targets in every way with the USX-like array, and prints means: first the quantities
-/// that no factor changes, then pressures and percepts under each control.
+/// that do not depend on the level, then pressures and percepts under each control.
 void compare_ways(const methods::Targets& targets, std::vector<Row>& rows);
 
 }  // namespace prostm::bench

@@ -19,7 +19,7 @@ constexpr std::array kWeights{0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0};
 constexpr int kFrames = 10;  // per field
 constexpr double kDegrees = 180.0 / kPi;
 
-/// A preset and its setting that weighs bending.
+/// A preset and its setting for the weight of bending.
 struct Kind {
   const char* preset;
   const char* setting;

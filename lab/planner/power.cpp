@@ -54,7 +54,7 @@ std::vector<FocusSample> foci_at(const LiftedPlan& plan, double time, double ful
 struct AtPaths {
   Distribution rmse, coverage, skill;  // per plan
   Distribution wanted;                 // Σ I² at an instant
-  double asked = 0.0, got = 0.0;       // Σ radiation pressure over one focal point alone
+  double asked = 0.0, got = 0.0;       // Σ radiation pressure, relative to one focal point alone
   Distribution peak, mean;             // pressures reached in a plan
   Distribution full, superposed;       // at focal points that all want intensity 1
 

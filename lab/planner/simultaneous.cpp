@@ -36,7 +36,7 @@ class Lap {
       s += (path.points[(i + 1) % n] - path.points[i % n]).norm();
     }
   }
-  /// Adds the focal point's place at time t, if it sounds.
+  /// Adds the focal point's place at time t, if it is audible.
   void add(double t, double silent_below, Sounding& out) const {
     const double laps = t / path_.period, s = at_.back() * (laps - std::floor(laps));
     const auto after = std::upper_bound(at_.begin() + 1, at_.end() - 1, s);

@@ -14,10 +14,10 @@ namespace prostm::bench {
 /// One wavelength at 40 kHz [m]: an array cannot separate two foci nearer than this.
 inline constexpr double kWavelength = 8.6e-3;
 
-/// The least distance between any two sounding focal points, instant by instant.
+/// The least distance between any two audible focal points, instant by instant.
 class LeastDistances {
  public:
-  /// Adds an instant. @param sounding places of the sounding focal points [m]; fewer than two add
+  /// Adds an instant. @param sounding places of the audible focal points [m]; fewer than two add
   /// nothing.
   void add(std::span<const Vec3> sounding);
   void add(const LeastDistances& other);
@@ -40,10 +40,10 @@ FocalPath begun_at(const FocalPath& path, int first, bool reversed);
 Plan begun_anywhere(const Plan& plan, Random& random, bool senses);
 
 /// Follows the plan's focal points from the paths' first points on for `seconds`, each in its own
-/// period. A focal point sounds where the path's pressure is at least `silent_below`.
+/// period. A focal point is audible where the path's pressure is at least `silent_below`.
 void follow(const Plan& plan, double seconds, double silent_below, LeastDistances& out);
 
-/// Prints the share of time in which any two sounding focal points are nearer than one and than two
+/// Prints the share of time in which any two audible focal points are nearer than one and than two
 /// wavelengths, and the least and the 5 % distance, over plans of the generated fields: for the
 /// starts as planned, for random starts, and for random starts and directions. Prints the same for
 /// consecutive plans emitted from silence on.

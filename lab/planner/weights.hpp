@@ -1,5 +1,5 @@
 #pragma once
-/// The benefit of weights where they are greater, and their cost elsewhere.
+/// The benefit of weights where they are large, and their cost elsewhere.
 
 #include <vector>
 

@@ -12,9 +12,9 @@ namespace prostm::bench {
 namespace {
 
 constexpr double kRate = 100.0;  // frames a second [Hz]
-// the tremor that is taken, and how much of its beginning its end is blended with [frames]
+// length of the tremor, and of the part over which its end is blended into its beginning [frames]
 constexpr std::size_t kStill = 200, kBlend = 20;
-constexpr double kLength = 60.0;  // for which a trembling hand is held [s]
+constexpr double kLength = 60.0;  // duration of a recording of a trembling hand [s]
 
 /// Turns a hand in D about its palm joint until the palm is level and points along +y, then
 /// tilts it, and moves it.
@@ -39,7 +39,7 @@ void place(const Hold& hold, Hand& hand) {
   }
 }
 
-/// Gives hands in T, as sources do.
+/// Transforms a hand to T, the frame of sources.
 void to_tracker(Hand& hand) {
   const Pose X_TD = default_tracker_pose().inverse();
   for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -48,7 +48,7 @@ void to_tracker(Hand& hand) {
   }
 }
 
-/// Gives one hand at all times.
+/// A source with the same hand at all times.
 class StillHand final : public HandSource {
  public:
   explicit StillHand(const Hand& hand) : hand_(hand) {}
@@ -63,7 +63,7 @@ class StillHand final : public HandSource {
   Hand hand_;
 };
 
-/// One hand a frame, as often as kRate, in T.
+/// Returns one hand per frame, kRate frames a second, in T.
 std::vector<Hand> hands_of(const std::string& path) {
   HandRecording recording = read_hand_recording(path);
   const auto source = make_recorded_hand(std::move(recording), {}, false, 0.02);
@@ -78,7 +78,7 @@ std::vector<Hand> hands_of(const std::string& path) {
   return hands;
 }
 
-/// The first of `count` frames in which the palm moves least.
+/// Returns the first of the `count` consecutive frames in which the palm moves least.
 std::size_t stillest(const std::vector<Hand>& hands, std::size_t count) {
   std::size_t best = 0;
   double least = 1e9;
@@ -94,7 +94,8 @@ std::size_t stillest(const std::vector<Hand>& hands, std::size_t count) {
   return best;
 }
 
-/// The largest distance of a fingertip from the plane of wrist, index and little knuckle [m].
+/// Returns the largest distance of a fingertip from the plane of wrist, index and little knuckle
+/// [m].
 double bent(const Hand& hand) {
   const Vec3& wrist = hand.position[kWrist];
   const Vec3 normal = (hand.position[kLittleProximal] - wrist)
@@ -108,8 +109,8 @@ double bent(const Hand& hand) {
   return most;
 }
 
-/// The palm's place at frame i, less its mean with the weights of a Gaussian whose gain at `cutoff`
-/// [Hz] is 1/√2: its faster movement.
+/// Returns the palm's fast movement at frame i: its place minus the mean with the weights of a
+/// Gaussian whose gain at `cutoff` [Hz] is 1/√2.
 Vec3 fast_part(const std::vector<Hand>& hands, std::size_t i, double cutoff) {
   const double sigma = kRate * std::sqrt(std::log(2.0)) / (2.0 * kPi * cutoff);  // [frames]
   const auto reach = static_cast<std::size_t>(std::ceil(4.0 * sigma));
@@ -124,7 +125,7 @@ Vec3 fast_part(const std::vector<Hand>& hands, std::size_t i, double cutoff) {
   return hands[i].position[kPalm] - sum / weights;
 }
 
-/// The palm's tremor in the stillest part of a recording, whose end goes over into its beginning.
+/// Returns the palm's tremor in the stillest part of a recording, made to repeat without a jump.
 std::vector<Vec3> tremor_of(const std::vector<Hand>& hands, double cutoff) {
   const std::size_t count = std::min(kStill + kBlend, hands.size());
   const std::size_t first = stillest(hands, count), blend = std::min(kBlend, count / 2);
@@ -137,7 +138,7 @@ std::vector<Vec3> tremor_of(const std::vector<Hand>& hands, double cutoff) {
   return tremor;
 }
 
-/// A recording of a hand that trembles, in T.
+/// Returns a recording of a hand that trembles, in T.
 HandRecording held(const Hand& hand, const std::vector<Vec3>& tremor, double length) {
   HandRecording recording;
   const auto frames = static_cast<std::size_t>(std::ceil(length * kRate)) + 1;

@@ -21,7 +21,7 @@ const HeldCase& named(const std::vector<HeldCase>& cases, const std::string& nam
                        [&](const HeldCase& held) { return held.name == name; });
 }
 
-/// A line for each θ and step. @param value of what was measured, one for each chart.
+/// Adds a line for each θ and step. @param value returns a result, one for each chart.
 void add_lines(const HeldCase& held, const PipelineSettings& base, const std::vector<int>& grids,
                const std::vector<std::function<double(const Measured&)>>& value, Chart* charts) {
   for (const double theta : kThetas) {

@@ -1,5 +1,5 @@
 #pragma once
-/// How what a palm and a finger feel depends on cells and steps.
+/// Dependence of the pressure on a palm and a finger on cells and steps.
 
 #include <string>
 

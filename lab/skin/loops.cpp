@@ -13,7 +13,7 @@ using namespace experiments;
 
 namespace {
 
-/// Range of a figure over the skins as "1.02 (0.94 – 1.10)", the nominal one first.
+/// Formats a number and its range over the skins as "1.02 (0.94 – 1.10)", the nominal one first.
 template <class Figure>
 std::string over_skins(std::size_t skins, Figure figure) {
   double low = HUGE_VAL, high = -HUGE_VAL;

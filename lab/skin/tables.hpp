@@ -1,6 +1,6 @@
 #pragma once
-/// Tables of the experiments of prostm/experiments: each prints its own, appends its figures to
-/// `rows`, and draws a picture where `figure` names a file.
+/// Tables of the experiments of prostm/experiments: each prints its table, appends its numbers to
+/// `rows`, and draws a picture if `figure` names a file.
 
 #include <string>
 #include <vector>

@@ -8,8 +8,8 @@
 
 Names are those of the C++ headers and everything is SI (m, s, m/s, Hz); only a name that ends in _mm means
 millimetres. Bad values raise ValueError, invalid files InputError (a ValueError), and values of a wrong type TypeError,
-each with one sentence that says what would be right. Arrays of results are read-only; most are views that keep alive
-the data that they show. The interpreter's lock is released while planning, scoring, emitting, reading and writing.
+each with one sentence that names the problem and the remedy. Arrays of results are read-only; most are views that keep
+their data alive. The interpreter's lock is released while planning, scoring, emitting, reading and writing.
 
   targets              TargetField, TargetFrame, read_field, write_field, field_from_json, field_to_json
   planning             plan, Planner, PlanSettings, PlanResult, PlanStatus, PlanStats, PlanTrace
@@ -69,13 +69,13 @@ def _target(field, cell, cell_mm, width_mm, frame, invert):
     if not isinstance(field, (TargetField, TargetFrame)):
         return TargetField(field, cell=cell, cell_mm=cell_mm)
     if cell is not None or cell_mm is not None:
-        raise ValueError(f"a {type(field).__name__} says itself how large a cell is; leave out cell and cell_mm")
+        raise ValueError(f"a {type(field).__name__} has its own cell size; leave out cell and cell_mm")
     return field
 
 
 def plan(field, preset=None, *, method="pro-stm", cell=None, cell_mm=None, width_mm=None, frame=None, invert=False,
          settings=None, trace=False, **more):
-    """Plans one field as `prostm plan` does, with the same plan to the bit, and returns a PlanResult.
+    """Plans one field and returns a PlanResult; the plan equals that of `prostm plan` to the bit.
 
     field: a (rows, cols) array of pressures >= 0 in any unit, NaN = no skin, row 0 at the smallest y; or a
         TargetField, a TargetFrame, or the name of a field's file.
@@ -89,7 +89,7 @@ def plan(field, preset=None, *, method="pro-stm", cell=None, cell_mm=None, width
         draw_rate=70.
     trace: keep the intermediate results, as PlanResult.trace.
 
-    Every call makes a planner. For many fields make a Planner once and call its plan().
+    Every call creates a planner. For many fields create one Planner and call its plan().
     Raises ValueError, TypeError.
     """
     if method not in ("pro-stm", "am"):
@@ -107,11 +107,11 @@ def plan(field, preset=None, *, method="pro-stm", cell=None, cell_mm=None, width
 
 
 def emit(plan, target=None, seconds=1.0, full_scale_pressure=None, *, sample_rate=40e3, settings=None, **more):
-    """Makes the samples that a device would be given to play one plan for some time, starting in silence.
+    """Returns the samples that a device would get to play one plan for some time, starting from silence.
 
     plan: a PlanResult; or a Plan with the TargetField or TargetFrame that it was made for as target, whose plane and
         heights lift it.
-    seconds: how long; the plan does not stall.
+    seconds: duration; the output does not fade out for lack of a new plan.
     full_scale_pressure: the rendered pressure, in the target's unit, that is played at intensity 1; None: that of the
         settings, else of PlanResult.emission, else the default gain times the target's largest pressure.
     settings: EmitSettings; further keywords are settings. Without settings there are as many focal points as the plan

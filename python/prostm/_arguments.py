@@ -1,4 +1,4 @@
-"""Says in one sentence which argument of a call has a wrong type, in place of pybind11's list of signatures."""
+"""Replaces pybind11's list of signatures by one sentence about the argument that has a wrong type."""
 
 import ast
 import functools
@@ -8,7 +8,7 @@ import os
 
 from . import _prostm
 
-# types of signatures: their names in messages, and the Python types that they take
+# types in signatures: their names in messages, and the Python types that they accept
 _PLAIN = {
     "float": ("a number", numbers.Real),
     "int": ("a whole number", numbers.Integral),
@@ -28,7 +28,7 @@ def _parts(kind):
 
 
 def _takes(kind, value):
-    """Whether a parameter of this type takes the value."""
+    """Returns whether a parameter of this type accepts the value."""
     name, inner = _parts(kind)
     if name == "Optional":
         return value is None or _takes(inner[0], value)
@@ -42,7 +42,7 @@ def _takes(kind, value):
 
 
 def _words(kind):
-    """Names a type of a signature in a message."""
+    """Returns the name of a signature's type in messages."""
     name, inner = _parts(kind)
     if name == "Optional":
         return _words(inner[0]) + " or None"
@@ -79,7 +79,7 @@ def wrong_type(label, name, words, value):
 
 
 def _wrong_argument(label, name, kind, value):
-    """Returns the error for an argument that its parameter does not take."""
+    """Returns the error for an argument that its parameter does not accept."""
     base, inner = _parts(kind)
     if base == "Optional" and isinstance(value, (list, tuple)):
         base, inner = _parts(inner[0])
@@ -126,7 +126,7 @@ def _explained(call, label):
 
 
 def explain_wrong_types():
-    """Lets every function, method and constructor of the compiled module say in words what is wrong with a call."""
+    """Makes every function, method and constructor of the compiled module explain wrong arguments in words."""
     for name, value in list(vars(_prostm).items()):
         if inspect.isbuiltin(value) and not name.startswith("_"):
             setattr(_prostm, name, _explained(value, f"{name}()"))

@@ -1,4 +1,4 @@
-"""Imports the compiled module, or explains in one sentence why this interpreter cannot load it."""
+"""Imports the compiled module, or raises ImportError with a sentence why this interpreter cannot load it."""
 
 import sys
 from pathlib import Path

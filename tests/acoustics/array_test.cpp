@@ -74,9 +74,9 @@ TEST(Array, FocusIsTheMaximumAlongTheThreeAxes) {
   const Medium air;
   Random random(3);
   for (int round = 0; round < 5; ++round) {
-    // off the axis the largest pressure lies on the beam's axis, so check x and y there; check z on
-    // the axis only, nearer than the distance at which spreading shifts the maximum towards the
-    // array
+    // off the axis the largest pressure lies on the beam's axis, so x and y are checked there; z is
+    // checked on the axis only, below the distance at which spreading shifts the maximum towards
+    // the array
     const Vec3 focus(random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03), 0.15);
     const auto phases = phases_for(array, air, focus);
     const double peak = std::abs(focused_field(array, air, phases, focus));
@@ -98,7 +98,7 @@ TEST(Array, FocusIsTheMaximumAlongTheThreeAxes) {
   }
 }
 
-TEST(Array, FocusIsAsWideAsTheApertureAllows) {
+TEST(Array, FocusWidthFollowsFromTheAperture) {
   const TransducerArray array = usx_array();
   const Medium air;
   const double wavelength = air.speed_of_sound() / array.frequency;
@@ -132,7 +132,7 @@ TEST(Array, FieldHasTheSymmetryOfTheArray) {
   }
 }
 
-TEST(Array, RadiationPressureGoesWithTheSquare) {
+TEST(Array, RadiationPressureIsQuadraticInThePressure) {
   const Medium air;
   const double c = air.speed_of_sound();
   EXPECT_NEAR(radiation_pressure(1000.0, air), 2e6 / (air.density() * c * c), 1e-12);

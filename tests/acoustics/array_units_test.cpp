@@ -15,7 +15,7 @@ Pose pose_of(Random& random) {
   return X;
 }
 
-TEST(ArrayUnits, AreFoundWhereverTheyStand) {
+TEST(ArrayUnits, AreFoundAtAnyPose) {
   Random random(3);
   for (int trial = 0; trial < 50; ++trial) {
     const TransducerArray unit = trial % 2 == 0 ? autd3_array() : usx_array();
@@ -23,7 +23,7 @@ TEST(ArrayUnits, AreFoundWhereverTheyStand) {
     std::vector<Pose> poses;
     for (int i = 0; i < 1 + trial % 4; ++i) {
       poses.push_back(pose_of(random));
-      poses.back().translation().x() += 3.0 * i;  // never within each other
+      poses.back().translation().x() += 3.0 * i;  // far enough apart
       placed.push_back(place(unit, poses.back()));
     }
     const std::vector<ArrayUnit> units = units_of(join(placed));
@@ -38,7 +38,7 @@ TEST(ArrayUnits, AreFoundWhereverTheyStand) {
   }
 }
 
-TEST(ArrayUnits, OneTransducerAwayMakesItOneUnit) {
+TEST(ArrayUnits, AMissingTransducerMakesTheArrayOneUnit) {
   const std::vector<TransducerArray> two = {
       autd3_array(), place(autd3_array(), Pose(Eigen::Translation3d(0.3, 0.0, 0.0)))};
   TransducerArray array = join(two);

@@ -23,13 +23,13 @@ Complex bessel_k0(Complex z) {
   return kStep * sum;
 }
 
-/// The surface wave that a point load of 1 N sends out on skin without edges, (S16).
+/// The surface wave of a point load of 1 N on skin without edges, (S16).
 Complex free_wave(const SkinModel& skin, double omega, double radius) {
   const Complex k = skin.surface_wave_number(omega);
   return skin.wave_strength(omega) / (2.0 * kPi) * bessel_k0(Complex(0.0, 1.0) * k * radius);
 }
 
-/// Skin whose waves die out over some 2 cm, so that edges at 10 cm are far away.
+/// Skin whose waves decay within about 2 cm, so that edges at 10 cm are far away.
 SkinModel lossy_skin() {
   SkinSettings settings;
   settings.loss = 0.03;
@@ -60,7 +60,7 @@ std::vector<double> one_cell(const SkinPatch& patch, std::size_t cell, int sampl
   return out;
 }
 
-/// A focus at rest with pressure cos(2πt/T), 16 samples; 0 where it is below 1e-4 of its middle.
+/// A focus at rest with pressure cos(2πt/T), 16 samples; 0 where it is below 1e-4 of its maximum.
 std::vector<double> focus_at(const SkinPatch& patch, int row, int col) {
   std::vector<double> out;
   for (int k = 0; k < 16; ++k) {
@@ -117,7 +117,7 @@ TEST(BoundedWaves, ErrorsFallWithTheFourthPowerOfTheStep) {
   EXPECT_NEAR(errors[0] / errors[1], 16.0, 1.0);
 }
 
-TEST(BoundedWaves, APointLoadFarFromTheEdgesSendsOutHankelsWave) {
+TEST(BoundedWaves, APointLoadFarFromTheEdgesEmitsHankelsWave) {
   constexpr int kCells = 120;
   constexpr double kStep = 2e-3;
   const SkinModel skin = lossy_skin();
@@ -138,8 +138,8 @@ TEST(BoundedWaves, APointLoadFarFromTheEdgesSendsOutHankelsWave) {
   }
 }
 
-// Near a load the half-space has more: 1/r at the load, and waves of shear.
-TEST(SkinModel, FarFromALoadTheHalfSpaceHasItsSurfaceWaveAlone) {
+// Near a load the half-space has additional terms: 1/r at the load, and shear waves.
+TEST(SkinModel, FarFromALoadTheHalfSpaceHasOnlyItsSurfaceWave) {
   const SkinModel skin{SkinSettings{}};
   const SkinPatch patch{1, 121, 2e-3};
   const double period = 1.0 / 300.0, omega = 2.0 * kPi / period;
@@ -155,7 +155,7 @@ TEST(SkinModel, FarFromALoadTheHalfSpaceHasItsSurfaceWaveAlone) {
   EXPECT_GT(excess(5), 0.5);
 }
 
-TEST(BoundedSkin, IsTheHalfSpaceFarFromItsEdges) {
+TEST(BoundedSkin, MatchesTheHalfSpaceFarFromItsEdges) {
   const SkinModel skin = lossy_skin();
   const SkinPatch patch{36, 36, 5e-3};
   test::CirclingFocus focus;
@@ -180,7 +180,7 @@ TEST(BoundedSkin, IsTheHalfSpaceFarFromItsEdges) {
   EXPECT_NEAR(perceived_intensity(bounded) / perceived_intensity(free), 1.0, 0.01);
 }
 
-// A focus at a moves b as much as one at b moves a, where a place is as wide as a focus.
+// A focus at a moves b as much as one at b moves a, each weighted by the pressure of its focus.
 TEST(BoundedSkin, IsReciprocal) {
   const SkinPatch patch{16, 20, 4e-3};
   BoundedSkin skin(SkinModel{SkinSettings{}}, patch, angle(patch));
@@ -198,7 +198,7 @@ TEST(BoundedSkin, IsReciprocal) {
   EXPECT_LT(std::abs(there - back), 5e-3 * std::abs(there)) << there / back;
 }
 
-TEST(BoundedSkin, WavesComeBackFromAnEdgeAndDoNotCrossIt) {
+TEST(BoundedSkin, WavesReflectAtAnEdgeAndDoNotCrossIt) {
   const SkinPatch patch{20, 20, 4e-3};
   const SkinModel model{SkinSettings{}};
   auto mask = all_skin(patch);

@@ -55,7 +55,7 @@ double our_pressure(const PackedArray& packed, const std::vector<Complex>& drive
   return static_cast<double>(std::abs(acoustic_pressure(packed, std::vector{p}, q)[0]));
 }
 
-/// Returns the distance from the focus along x at which `pressure` is half of its value there [m].
+/// Returns the distance from the focus along x at which `pressure` falls to half [m].
 template <class F>
 double half_width(F&& pressure) {
   const double half = 0.5 * pressure(0.0);
@@ -67,12 +67,12 @@ double half_width(F&& pressure) {
   return low;
 }
 
-TEST(ClosedForms, FieldAndWidthOfAFocusAreThoseOfRayleighsIntegral) {
+TEST(ClosedForms, FieldAndWidthOfAFocusMatchRayleighsIntegral) {
   const TransducerArray array = usx_array();
   const PackedArray packed(array, Medium());
   for (const double z : {0.10, 0.15, 0.20, 0.25, 0.30}) {
     for (const double off : {0.0, 0.04}) {
-      if (off > 0.0 && z < 0.12) continue;  // the far field is 1.03 % off at one place there
+      if (off > 0.0 && z < 0.12) continue;  // the far field is 1.03 % off at one point there
       const Vec3 focus(off, 0.5 * off, z);
       const std::vector<Complex> drives = focused(array, focus);
       const auto ours = [&](double x) {
@@ -91,7 +91,7 @@ TEST(ClosedForms, FieldAndWidthOfAFocusAreThoseOfRayleighsIntegral) {
   }
 }
 
-// The first minimum beside the focus of a square aperture of side D is at λz/D for small angles.
+// The first minimum next to the focus of a square aperture of side D is at λz/D for small angles.
 TEST(ClosedForms, TheFirstMinimumIsNearTheParaxialOne) {
   const TransducerArray array = usx_array();
   const PackedArray packed(array, Medium());
@@ -109,8 +109,8 @@ TEST(ClosedForms, TheFirstMinimumIsNearTheParaxialOne) {
   EXPECT_NEAR(at, paraxial, 0.08 * paraxial);
 }
 
-// The pressure stays the same when source and receiver, equally directed to each other, change
-// places.
+// The pressure stays the same when source and receiver, each at the same angle to the line between
+// them, are exchanged.
 TEST(ClosedForms, Reciprocity) {
   Random random(8);
   const auto direction = [&] {
@@ -123,7 +123,7 @@ TEST(ClosedForms, Reciprocity) {
     const Vec3 way = (b - a).normalized();
     here.position = {a};
     there.position = {b};
-    // turns the piston's axis by the same angle from the line to the other one
+    // rotates the piston's axis by the same angle away from the line to the other one
     const Vec3 across = way.cross(direction()).normalized();
     const double theta = random.uniform(0.0, 1.4);
     here.normal = {Eigen::AngleAxisd(theta, across) * way};

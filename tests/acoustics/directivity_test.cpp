@@ -52,7 +52,7 @@ TEST(Directivity, IsOneOnAxisAndZeroBehind) {
   }
 }
 
-TEST(Directivity, DataSheetIsMetAtEveryTenDegrees) {
+TEST(Directivity, MatchesTheDataSheetEveryTenDegrees) {
   const double values[] = {1, 1, 1, .891, .708, .501, .355, .251, .200, .178};
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(sheet(10.0 * i), values[i], 1e-9) << 10 * i << "°";
   // between the data points, from an independent solution of the spline's equations
@@ -76,7 +76,7 @@ TEST(Directivity, DataSheetSplineIsSmoothAndNatural) {
   for (double x = 0.0; x <= 90.0; x += 0.1) EXPECT_LT(sheet(x), 1.008);
 }
 
-TEST(Directivity, HasTheNamesOfTheFiles) {
+TEST(Directivity, NamesMatchThoseInFiles) {
   EXPECT_STREQ(directivity_name(Directivity::Piston), "piston");
   EXPECT_STREQ(directivity_name(Directivity::T4010A1), "t4010a1");
   EXPECT_STREQ(directivity_name(Directivity::Omni), "omni");

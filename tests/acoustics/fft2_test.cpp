@@ -31,7 +31,7 @@ Complex transformed(const std::vector<Complex>& raster, int rows, int cols, int 
   return sum;
 }
 
-TEST(Fft2, IsTheSumAndItsInverseForEveryShapeAlsoOfOneRowOrColumn) {
+TEST(Fft2, MatchesTheSumAndItsInverseForEveryShapeEvenOneRowOrColumn) {
   for (const auto& [rows, cols] :
        {std::pair{1, 1}, {1, 2}, {2, 1}, {1, 20}, {20, 1}, {3, 4}, {5, 9}}) {
     const std::vector<Complex> raster = random_raster(rows, cols);

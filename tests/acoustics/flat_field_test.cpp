@@ -14,7 +14,7 @@
 namespace prostm {
 namespace {
 
-/// Returns a raster of some size whose middle is at p_D, turned by yaw about the vertical and then
+/// Returns a raster of some size with its middle at p_D, rotated by yaw about the vertical and then
 /// tilted; its skin faces the array.
 FlatRaster raster(int rows, int cols, double cell, const Vec3& middle, double yaw, double tilt) {
   const Eigen::Matrix3d axes =
@@ -62,7 +62,7 @@ SurfacePoints points_of(const FlatRaster& flat, const std::vector<std::size_t>& 
   return out;
 }
 
-/// Returns the largest difference, as a share of the largest value.
+/// Returns the largest difference, relative to the largest value.
 double difference(const std::vector<float>& a, const std::vector<float>& b) {
   EXPECT_EQ(a.size(), b.size());
   float worst = 0.0F;
@@ -71,7 +71,7 @@ double difference(const std::vector<float>& a, const std::vector<float>& b) {
 }
 
 // Planes of any height, tilt and cell above two arrays, with holes in the skin.
-TEST(FlatField, IsThatOfEveryPoint) {
+TEST(FlatField, MatchesThePlainComputationAtEveryPoint) {
   WorkerPool pool(2);
   Random random(36);
   const Medium air;
@@ -108,7 +108,7 @@ TEST(FlatField, IsThatOfEveryPoint) {
   EXPECT_GE(largest_step, 4);
 }
 
-TEST(FlatField, ComputesEveryPointWhereItHasTo) {
+TEST(FlatField, ComputesEveryPointWhereInterpolationIsInaccurateOrSlow) {
   const PackedArray packed(usx_array(), Medium());
   const auto step = [&](double cell, double height, std::size_t samples) {
     return flat_step(packed, raster(200, 200, cell, Vec3(0, 0, height), 0, 0), samples);

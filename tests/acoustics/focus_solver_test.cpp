@@ -49,7 +49,7 @@ Eigen::VectorXd random_targets(Random& random, Eigen::Index count) {
   return Eigen::VectorXd::NullaryExpr(count, [&] { return random.uniform(0.25, 1.0); });
 }
 
-TEST(FocusSolver, OneFocusGetsTheTargetOrAllThatTheArrayHas) {
+TEST(FocusSolver, OneFocusGetsTheTargetOrTheFullOutputOfTheArray) {
   const Propagation g = propagation_to({{0.02, -0.01, 0.2}});
   const double all = g.cwiseAbs().sum();
   for (const FocusMethod method : kMethods) {
@@ -66,7 +66,7 @@ TEST(FocusSolver, OneFocusGetsTheTargetOrAllThatTheArrayHas) {
   EXPECT_NEAR(std::abs(phases.pressure[0]), all, 1e-9 * all);
 }
 
-TEST(FocusSolver, DrivesStayWithinOneAndPressuresAreTheirs) {
+TEST(FocusSolver, DrivesStayWithinOneAndGiveTheReportedPressures) {
   Random random(1);
   for (std::uint64_t n = 0; n < test::reduced(200); ++n) {
     const Propagation g = propagation_to(random_foci(random, 1 + random.below(16), 5e-3));
@@ -81,8 +81,8 @@ TEST(FocusSolver, DrivesStayWithinOneAndPressuresAreTheirs) {
   }
 }
 
-/// Means over random sets: the largest error of any focal point, and the power at full drive, the
-/// sum of (level · a_m)² over that of each focal point alone.
+/// Means over random sets: the largest error of a focal point, and the power at full drive, i.e.
+/// the sum of (level · a_m)² over that of each focal point alone.
 struct Means {
   double worst = 0.0, power = 0.0;
 };
@@ -102,7 +102,7 @@ Means means_of(FocusMethod method, int foci) {
   return means;
 }
 
-TEST(FocusSolver, TheReferenceIsExactAndIterationsUseMoreOfTheArray) {
+TEST(FocusSolver, TheReferenceIsExactAndIterationsGainPower) {
   for (const int foci : {2, 4, 8}) {
     const Means added = means_of(FocusMethod::Superposition, foci);
     const Means gs_pat = means_of(FocusMethod::GsPat, foci);
@@ -123,7 +123,7 @@ TEST(FocusSolver, TheReferenceIsExactAndIterationsUseMoreOfTheArray) {
 }
 
 // (A4). Close to the array, focal points far apart each get more than 1/P of a single one's power.
-TEST(FocusSolver, FocalPointsFarApartShareTheArrayAsTheirTransducersDiffer) {
+TEST(FocusSolver, DistantFocalPointsGetMoreThanEqualShares) {
   const auto bound_and_power = [](double height) {
     std::vector<Vec3> corners;
     for (const double x : {-0.06, 0.06}) {
@@ -147,7 +147,7 @@ TEST(FocusSolver, FocalPointsFarApartShareTheArrayAsTheirTransducersDiffer) {
   EXPECT_LT(bound_high, 1.1);
 }
 
-TEST(FocusSolver, HalfTheRadiationPressureIsHalfReached) {
+TEST(FocusSolver, HalfTheTargetRadiationPressureGivesHalf) {
   Random random(3);
   const Propagation g = propagation_to(random_foci(random, 4, 15e-3));
   const Eigen::VectorXd target = 50.0 * random_targets(random, 4);
@@ -199,17 +199,17 @@ TEST(FocusSolver, FocalPointsThatCancelGetNothing) {
   EXPECT_TRUE(std::isfinite(s.level));
 }
 
-TEST(FocusSolver, StartsAtThePhasesOfTheSolutionBefore) {
-  // the solution's phases are near a fixed point, so the drives hardly change
+TEST(FocusSolver, StartsFromThePhasesOfThePreviousSolution) {
+  // the phases are already near a fixed point, so the drives hardly change
   Random random(5);
   std::vector<Vec3> foci = random_foci(random, 4, 15e-3);
   const Eigen::VectorXd target = 100.0 * random_targets(random, 4);
   const FocusSolution before = solve_foci(propagation_to(foci), target, with(FocusMethod::GsPat));
-  for (Vec3& p : foci) p.x() += 0.175e-3;  // 7 m/s for one sample of 40 kHz
+  for (Vec3& p : foci) p.x() += 0.175e-3;  // 7 m/s at 40 kHz
   const Propagation g = propagation_to(foci);
   const Eigen::VectorXd phases =
       before.pressure.unaryExpr([](const auto& p) { return std::arg(p); });
-  // compared over all drives, since the phase of a weak one may turn freely
+  // compared over all drives, since the phase of a weak drive is poorly determined
   const auto moved = [&](const FocusSolution& s) {
     return (s.drive - before.drive).norm() / before.drive.norm();
   };
@@ -219,7 +219,7 @@ TEST(FocusSolver, StartsAtThePhasesOfTheSolutionBefore) {
   EXPECT_GT(moved(solve_foci(g, target, with(FocusMethod::GsPat), others)), 0.4);
 }
 
-TEST(FocusSolver, RefusesWhatCannotBe) {
+TEST(FocusSolver, RejectsInvalidArguments) {
   const Propagation g = propagation_to({{0.0, 0.0, 0.2}, {0.02, 0.0, 0.2}});
   const Eigen::VectorXd good = Eigen::VectorXd::Constant(2, 10.0);
   const auto refuses = [&](const Propagation& matrix, const Eigen::VectorXd& target,
@@ -243,7 +243,7 @@ TEST(FocusSolver, RefusesWhatCannotBe) {
   refuses(g, good, {}, settings);
 }
 
-TEST(Propagation, RefusesFocalPointsThatCannotBe) {
+TEST(Propagation, RejectsInvalidFocalPoints) {
   const TransducerArray array = usx_array();
   const auto refuses = [&](std::vector<Vec3> foci, const char* word) {
     try {
@@ -261,7 +261,7 @@ TEST(Propagation, RefusesFocalPointsThatCannotBe) {
   refuses({{0, std::numeric_limits<double>::quiet_NaN(), 0.2}}, "finite");
 }
 
-TEST(FocusSolver, CoincidingFocalPointsAreOne) {
+TEST(FocusSolver, CoincidingFocalPointsCountAsOne) {
   const Propagation one = propagation_to({{0.0, 0.0, 0.2}});
   Propagation g(2, one.cols());
   g << one, one;

@@ -17,7 +17,7 @@ FocusWidth facing(const PackedArray& packed, const Vec3& focus) {
 
 // A square aperture gives sin²X/X², X = 2π x sin α/λ. Its least-squares Gaussian is narrower than
 // its half width by a known factor; this test checks only that it grows like (A6).
-TEST(FocusWidth, GrowsWithHeightAsTheApertureSays) {
+TEST(FocusWidth, GrowsWithHeightAsTheApertureRequires) {
   const PackedArray packed(usx_array(), Medium());
   const double half_side = 0.5 * 16 * 10.5e-3;
   const double at_300 = facing(packed, Vec3(0.0, 0.0, 0.3)).along;
@@ -29,7 +29,7 @@ TEST(FocusWidth, GrowsWithHeightAsTheApertureSays) {
   }
 }
 
-TEST(FocusWidth, IsRoundAboveTheMiddleAndWiderBesideItAndOnATilt) {
+TEST(FocusWidth, IsRoundAboveTheMiddleAndWiderOffTheAxisAndOnATilt) {
   const PackedArray packed(usx_array(), Medium());
   const FocusWidth middle = facing(packed, Vec3(0.0, 0.0, 0.2));
   EXPECT_NEAR(middle.along, middle.across, 1e-3 * middle.along);
@@ -40,14 +40,14 @@ TEST(FocusWidth, IsRoundAboveTheMiddleAndWiderBesideItAndOnATilt) {
   const double tilt = 40.0 * kPi / 180.0;
   const std::array<double, 1> heights{0.2}, offsets{0.0}, tilts{tilt};
   const FocusWidth tilted = focus_width_table(packed, Medium(), heights, offsets, tilts)[0].width;
-  // the tilt stretches the beam's cross section, as far as the beam is long
+  // the tilt stretches the beam's cross section as long as the beam is long enough
   EXPECT_GT(tilted.along, 1.15 * middle.along);
   EXPECT_LT(tilted.along, 1.02 * middle.along / std::cos(tilt));
   EXPECT_NEAR(tilted.across, middle.across, 0.03 * middle.across);
   EXPECT_NEAR(tilted.level, std::pow(std::cos(tilt), 2) * middle.level, 0.01 * middle.level);
 }
 
-TEST(FocusWidth, TableGoesThroughAllCombinations) {
+TEST(FocusWidth, TableCoversAllCombinations) {
   const PackedArray packed(autd3_array(), Medium());
   const std::array<double, 2> heights{0.15, 0.25}, offsets{0.0, 0.05};
   const std::array<double, 3> tilts{0.0, 0.3, 0.6};
@@ -62,7 +62,7 @@ TEST(FocusWidth, TableGoesThroughAllCombinations) {
   }
 }
 
-TEST(FocusWidth, RefusesWhatHasNoFocus) {
+TEST(FocusWidth, RejectsPositionsWithoutAFocus) {
   const PackedArray packed(usx_array(), Medium());
   EXPECT_THROW(facing(packed, Vec3(0.0, 0.0, -0.2)), std::invalid_argument);
   EXPECT_THROW(focus_width(packed, Medium(), Vec3(0.0, 0.0, 0.2), Vec3::UnitZ(), Vec3::UnitX()),

@@ -101,7 +101,7 @@ TEST(LiveFocusSolver, FindsTheDrivesOfTheReference) {
   }
 }
 
-TEST(LiveFocusSolver, OneFocalPointGetsWhatItAsksFor) {
+TEST(LiveFocusSolver, OneFocalPointGetsTheRequestedAmplitude) {
   for (const FocusMethod method : kLive) {
     LiveFocusSolver solver(usx_array(), Medium{}, cold(method));
     for (const float amplitude : {0.01F, 0.5F, 0.8F}) {
@@ -154,7 +154,7 @@ Seen follow(const LiveFocusSettings& settings, int count, double apart) {
   return seen;
 }
 
-TEST(LiveFocusSolver, WeightedIsTruerLouderAndSmootherThanGsPat) {
+TEST(LiveFocusSolver, WeightedIsMoreAccurateStrongerAndSmootherThanGsPat) {
   const Seen weighted = follow({}, 4, 0.05);
   const Seen gs_pat = follow({.method = FocusMethod::GsPat, .iterations = 20}, 4, 0.05);
   EXPECT_LT(weighted.worst, 2e-3);
@@ -164,7 +164,7 @@ TEST(LiveFocusSolver, WeightedIsTruerLouderAndSmootherThanGsPat) {
   EXPECT_LT(weighted.step, gs_pat.step);
 }
 
-TEST(LiveFocusSolver, WhatItKeepsFromSampleToSampleMakesPhasesSmooth) {
+TEST(LiveFocusSolver, WarmStartsImproveTheAccuracy) {
   LiveFocusSettings alone;
   alone.warm = false;
   const Seen kept = follow({}, 4, 0.05), forgotten = follow(alone, 4, 0.05);
@@ -204,7 +204,7 @@ TEST(LiveFocusSolver, DrivesAreFiniteAndWithinOneForAnyInput) {
   }
 }
 
-TEST(LiveFocusSolver, LeavesOutWhatCannotBeHad) {
+TEST(LiveFocusSolver, OmitsFocalPointsThatCannotBeReached) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   LiveFocusSolver solver(usx_array(), Medium{}, {});
   const LiveFocus good = {{0.0F, 0.0F, 0.2F}, 0.5F};
@@ -228,7 +228,7 @@ TEST(LiveFocusSolver, LeavesOutWhatCannotBeHad) {
   EXPECT_EQ((drives_of(solver) - as_many).norm(), 0.0);
 }
 
-TEST(LiveFocusSolver, RoundsPhases) {
+TEST(LiveFocusSolver, RoundsPhasesToTheGivenLevels) {
   const auto foci = moving(fields::MovingFoci(5, 4, 0.05), 7);
   LiveFocusSettings settings = cold(FocusMethod::Weighted);
   LiveFocusSolver any(usx_array(), Medium{}, settings);
@@ -245,7 +245,7 @@ TEST(LiveFocusSolver, RoundsPhases) {
   }
 }
 
-TEST(LiveFocusSolver, AllocatesNothingAndRepeatsItself) {
+TEST(LiveFocusSolver, IsRepeatableAndDoesNotAllocate) {
   for (const FocusMethod method : kLive) {
     LiveFocusSolver solver(usx_array(), Medium{}, {.method = method});
     std::vector<std::vector<LiveFocus>> stream;
@@ -262,7 +262,7 @@ TEST(LiveFocusSolver, AllocatesNothingAndRepeatsItself) {
   }
 }
 
-TEST(LiveFocusSolver, EveryVectorSetFindsTheSame) {
+TEST(LiveFocusSolver, EveryVectorTargetGivesTheSameDrives) {
   const fields::MovingFoci paths(2, 7, 0.02);
   for (const FocusMethod method : kLive) {
     const auto last = [&](std::int64_t targets) {
@@ -279,7 +279,7 @@ TEST(LiveFocusSolver, EveryVectorSetFindsTheSame) {
   }
 }
 
-TEST(LiveFocusSolver, RefusesSettingsThatCannotBe) {
+TEST(LiveFocusSolver, RejectsInvalidSettings) {
   const auto make = [](const LiveFocusSettings& settings) {
     LiveFocusSolver(usx_array(), Medium{}, settings);
   };

@@ -85,7 +85,7 @@ double worst(const std::vector<float>& ours, const Eigen::VectorXd& expected) {
   return (got - expected).cwiseAbs().maxCoeff() / expected.maxCoeff();
 }
 
-TEST(ComplexProduct, KernelsAreThePlainSums) {
+TEST(ComplexProduct, KernelsMatchPlainSums) {
   Random random(3);
   for (const std::size_t rows : {1u, 3u, 7u, 48u}) {
     for (const std::size_t cols : {1u, 16u, 37u}) {
@@ -141,12 +141,12 @@ TEST(DriveBasis, LeavesNoMoreThanTheTolerance) {
   EXPECT_LT(left.squaredNorm(), 1e-6F * drives.squaredNorm());
 }
 
-TEST(DriveBasis, SilenceHasNone) {
+TEST(DriveBasis, SilenceHasAnEmptyBasis) {
   WorkerPool pool(1);
   EXPECT_EQ(covariance_factor(LoopDrives::Zero(8, 5), pool, 1e-6).cols(), 0);
 }
 
-TEST(DriveBasis, RefusesWhatIsNoLoop) {
+TEST(DriveBasis, RejectsInvalidLoops) {
   WorkerPool pool(1);
   const auto refused = [&](const LoopDrives& drives, double tolerance) {
     EXPECT_THROW(covariance_factor(drives, pool, tolerance), std::invalid_argument);
@@ -160,8 +160,8 @@ TEST(DriveBasis, RefusesWhatIsNoLoop) {
   refused(drives, 1e-6);
 }
 
-// The pressure is 0 everywhere, without a division by it.
-TEST(LoopField, OfSilenceIsNothing) {
+// The pressure is 0 everywhere, without a division by zero.
+TEST(LoopField, SilenceGivesNoPressure) {
   const PackedArray packed(usx_array(), Medium());
   WorkerPool pool(1);
   const LoopPressure loop = loop_pressure(
@@ -170,7 +170,7 @@ TEST(LoopField, OfSilenceIsNothing) {
   EXPECT_EQ(loop.envelope, loop.mean);
 }
 
-TEST(LoopField, IsThatOfEverySampleByItself) {
+TEST(LoopField, MatchesEachSampleComputedAlone) {
   WorkerPool pool(2);
   for (const TransducerArray& array : {usx_array(), autd3_array()}) {
     const PackedArray packed(array, Medium());
@@ -195,8 +195,8 @@ TEST(LoopField, IsThatOfEverySampleByItself) {
   }
 }
 
-// Drives without any structure have full rank: the computation is slower, but holds.
-TEST(LoopField, HoldsForDrivesOfFullRank) {
+// Unstructured drives have full rank: the computation is slower, but still correct.
+TEST(LoopField, IsCorrectForDrivesOfFullRank) {
   WorkerPool pool(2);
   const TransducerArray array = usx_array();
   const PackedArray packed(array, Medium());
@@ -225,7 +225,7 @@ TEST(LoopField, DoesNotDependOnTheNumberOfThreads) {
 }
 
 // Far from a single transducer the wave is plane: cos² of the angle of incidence.
-TEST(LoopField, APlaneWavePressesByTheSquaredCosine) {
+TEST(LoopField, APlaneWavePressesWithTheSquaredCosine) {
   TransducerArray array = usx_array();
   array.position = {Vec3::Zero()};
   array.normal = {Vec3::UnitZ()};
@@ -242,7 +242,7 @@ TEST(LoopField, APlaneWavePressesByTheSquaredCosine) {
   }
 }
 
-// Momentum of a focus on a level surface and on one tilted by 40°, over (A5).
+// Radiation pressure of a focus on a level surface and on one tilted by 40°, relative to (A5).
 TEST(LoopField, AFocusPressesLessOnATiltedSurface) {
   const PackedArray packed(usx_array(), Medium());
   WorkerPool pool(1);
@@ -259,7 +259,7 @@ TEST(LoopField, AFocusPressesLessOnATiltedSurface) {
   EXPECT_NEAR(share(40.0 * kPi / 180.0), 0.53, 0.01);
 }
 
-TEST(LoopField, RefusesWhatHasNoField) {
+TEST(LoopField, RejectsInvalidInput) {
   const PackedArray packed(usx_array(), Medium());
   WorkerPool pool(1);
   const LoopDrives drives = two_circles(packed.array, 6);

@@ -1,4 +1,4 @@
-/// Arrays of several parts: the placing of transducers, and results that do not depend on it.
+/// Arrays of several parts: placing transducers, and results that do not depend on the placement.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,21 +34,21 @@ std::string refusal(const std::function<void()>& call) {
   return "not refused";
 }
 
-TEST(Arrays, Autd3IsTheGridWithoutThreePlaces) {
+TEST(Arrays, Autd3IsAGridWithoutThreeTransducers) {
   const TransducerArray array = autd3_array();
   ASSERT_EQ(array.position.size(), 249u);
   ASSERT_EQ(array.normal.size(), 249u);
   EXPECT_NO_THROW(validate(array));
   const double pitch = 10.16e-3;
-  // in multiples of the pitch from transducer 0, AUTD3's own origin
+  // in multiples of the pitch from transducer 0, which is AUTD3's own origin
   const auto steps = [&](std::size_t i) -> Vec3 {
     return (array.position[i] - array.position[0]) / pitch;
   };
   EXPECT_LT((steps(17) - Vec3(17, 0, 0)).norm(), 1e-9);
   EXPECT_LT((steps(18) - Vec3(0, 1, 0)).norm(), 1e-9);
-  EXPECT_LT((steps(19) - Vec3(3, 1, 0)).norm(), 1e-9);  // without x = 1 and 2
+  EXPECT_LT((steps(19) - Vec3(3, 1, 0)).norm(), 1e-9);  // x = 1 and 2 are missing
   EXPECT_LT((steps(31) - Vec3(15, 1, 0)).norm(), 1e-9);
-  EXPECT_LT((steps(32) - Vec3(17, 1, 0)).norm(), 1e-9);  // without x = 16
+  EXPECT_LT((steps(32) - Vec3(17, 1, 0)).norm(), 1e-9);  // x = 16 is missing
   EXPECT_LT((steps(33) - Vec3(0, 2, 0)).norm(), 1e-9);
   EXPECT_LT((steps(248) - Vec3(17, 13, 0)).norm(), 1e-9);
   EXPECT_LT((array.position[0] + array.position[248]).norm(), 1e-12);  // centred
@@ -73,7 +73,7 @@ TEST(Arrays, TheFieldMovesWithTheArray) {
   }
 }
 
-TEST(Arrays, PlacesComposeAndKeepNormalsOfLengthOne) {
+TEST(Arrays, PosesComposeAndKeepUnitNormals) {
   Random random(22);
   const TransducerArray array = autd3_array();
   for (int trial = 0; trial < 50; ++trial) {
@@ -111,7 +111,7 @@ TEST(Arrays, SourceAndReceiverCanBeExchanged) {
   }
 }
 
-TEST(Arrays, BehindATransducerIsSilence) {
+TEST(Arrays, BehindATransducerThePressureIsZero) {
   const Medium air;
   const TransducerArray up = usx_array();
   const Pose over(Eigen::Translation3d(0.0, 0.0, 0.4) *
@@ -151,7 +151,7 @@ TEST(Arrays, JoinedArraysFocusTogether) {
   EXPECT_NEAR(focused(both), focused(parts[0]) + focused(parts[1]), 1e-8);
 }
 
-TEST(Arrays, JoinRefusesWhatCannotSoundAsOne) {
+TEST(Arrays, JoinRejectsArraysThatCannotShareADrive) {
   const TransducerArray autd3 = autd3_array();
   const auto joined_with = [&](const std::function<void(TransducerArray&)>& change) {
     TransducerArray other = autd3;
@@ -171,7 +171,7 @@ TEST(Arrays, JoinRefusesWhatCannotSoundAsOne) {
   EXPECT_THAT(refusal([] { join({}); }), HasSubstr("at least one"));
 }
 
-TEST(Arrays, PlaceRefusesWhatIsNoPose) {
+TEST(Arrays, PlaceRejectsInvalidPoses) {
   const TransducerArray array = usx_array();
   Pose stretched = Pose::Identity(), mirrored = stretched, lost = stretched, far = stretched;
   stretched.linear() *= 1.001;
@@ -183,7 +183,7 @@ TEST(Arrays, PlaceRefusesWhatIsNoPose) {
   }
 }
 
-TEST(Arrays, ValidateNamesWhatIsWrong) {
+TEST(Arrays, ValidateReportsTheFault) {
   const auto changed = [](const std::function<void(TransducerArray&)>& change) {
     TransducerArray array = usx_array();
     change(array);

@@ -31,7 +31,7 @@ Vec3 random_direction(Random& random) {
   return Vec3(random.normal(), random.normal(), random.normal()).normalized();
 }
 
-/// Returns points all around at distances up to `reach`, not on a transducer.
+/// Returns points in all directions at distances up to `reach`, none on a transducer.
 std::vector<Vec3> points_around(const TransducerArray& array, double reach, std::uint64_t seed) {
   Random random(seed);
   std::vector<Vec3> points;
@@ -52,7 +52,7 @@ double worst_error(const PackedArray& packed, const Matrix& g, std::span<const V
     for (std::size_t n = 0; n < packed.transducers(); ++n) {
       const Vec3 way = points[m] - packed.array.position[n];
       const double r = way.norm();
-      // at 90°, within rounding, either side of the table's last step is correct
+      // at 90°, up to rounding, either side of the table's last step is correct
       if (std::abs(way.dot(packed.array.normal[n])) < 1e-6 * r) continue;
       std::complex<double> expected = propagate(packed.array, packed.wave, n, points[m]);
       if (!normals.empty()) expected *= std::max(-way.dot(normals[m]) / r, 0.0);
@@ -74,7 +74,7 @@ TransducerArray turned_omni() {
 }
 
 // 0.5 m is 366 rad at 40 kHz.
-TEST(PropagationKernels, EveryElementIsThatOfA1) {
+TEST(PropagationKernels, EveryElementMatchesA1) {
   for (const TransducerArray& array : {usx_array(), autd3_array(), turned_omni()}) {
     const PackedArray packed(array, Medium());
     for (const double reach : {0.5, 10.0}) {
@@ -86,7 +86,7 @@ TEST(PropagationKernels, EveryElementIsThatOfA1) {
   }
 }
 
-TEST(PropagationKernels, RowsInSinglePrecisionAreNearlyTheSame) {
+TEST(PropagationKernels, SinglePrecisionRowsAreNearlyTheSame) {
   for (const TransducerArray& array : {usx_array(), autd3_array(), turned_omni()}) {
     const PackedArray packed(array, Medium());
     const std::vector<Vec3> points = points_around(array, 1.0, 15);
@@ -99,7 +99,7 @@ TEST(PropagationKernels, RowsInSinglePrecisionAreNearlyTheSame) {
   }
 }
 
-TEST(PropagationKernels, NormalsOfTheirOwnAreTheSame) {
+TEST(PropagationKernels, IndividualNormalsGiveTheSame) {
   Random random(11);
   TransducerArray array = usx_array();
   for (Vec3& n : array.normal) n = random_direction(random);
@@ -108,8 +108,8 @@ TEST(PropagationKernels, NormalsOfTheirOwnAreTheSame) {
   EXPECT_LT(worst_error(packed, rows_of(propagation_rows, packed, points), points), 1e-6);
 }
 
-// Two arrays 2 m apart: absorption is not about the same for all transducers.
-TEST(PropagationKernels, ArraysFarApartAreTheSame) {
+// For two arrays 2 m apart, absorption differs from transducer to transducer.
+TEST(PropagationKernels, DistantArraysGiveTheSame) {
   Pose X_DA = Pose::Identity();
   X_DA.translation() = Vec3(2.0, 0.3, 0.1);
   const TransducerArray both =
@@ -121,7 +121,7 @@ TEST(PropagationKernels, ArraysFarApartAreTheSame) {
 }
 
 // Beyond the polynomial's range the table is used.
-TEST(PropagationKernels, WidePistonsAreAsGoodAsTheirTable) {
+TEST(PropagationKernels, WidePistonsAreAsAccurateAsTheirTable) {
   for (const double radius : {4.5e-3, 10e-3, 20e-3, 50e-3}) {
     TransducerArray array = usx_array();
     array.radius = radius;
@@ -136,7 +136,7 @@ TEST(PropagationKernels, WidePistonsAreAsGoodAsTheirTable) {
 }
 
 // (A20); the back of the surface receives nothing.
-TEST(PropagationKernels, SurfaceNormalsWeighByTheCosineOfIncidence) {
+TEST(PropagationKernels, SurfaceNormalsWeightByTheCosineOfIncidence) {
   const PackedArray packed(usx_array(), Medium());
   const std::vector<Vec3> points = points_around(packed.array, 0.5, 9);
   Random random(10);
@@ -150,7 +150,7 @@ TEST(PropagationKernels, SurfaceNormalsWeighByTheCosineOfIncidence) {
 }
 
 // 1/r and phase along the axis of one transducer, without the reference.
-TEST(PropagationKernels, OneTransducerFallsAsOneOverRAndTurnsByKr) {
+TEST(PropagationKernels, OneTransducerFallsAsOneOverRWithPhaseKr) {
   TransducerArray array = usx_array();
   array.position = {Vec3::Zero()};
   array.normal = {Vec3::UnitZ()};
@@ -168,7 +168,7 @@ TEST(PropagationKernels, OneTransducerFallsAsOneOverRAndTurnsByKr) {
   }
 }
 
-TEST(PropagationKernels, RowsAreFilledUpWithSilence) {
+TEST(PropagationKernels, RowsArePaddedWithZeros) {
   const PackedArray packed(autd3_array(), Medium());
   ASSERT_EQ(packed.transducers(), 249u);
   ASSERT_EQ(packed.stride(), 256u);
@@ -182,8 +182,8 @@ TEST(PropagationKernels, RowsAreFilledUpWithSilence) {
   }
 }
 
-// A point's row does not depend on the other requested points.
-TEST(PropagationKernels, RowsStandForThemselves) {
+// A point's row does not depend on the other points requested.
+TEST(PropagationKernels, RowsAreIndependent) {
   const PackedArray packed(usx_array(), Medium());
   const std::vector<Vec3> points = points_around(packed.array, 0.4, 12);
   const Matrix all = rows_of(propagation_rows, packed, points);

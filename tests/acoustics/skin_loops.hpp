@@ -10,7 +10,7 @@
 
 namespace prostm::test {
 
-/// A focus of 1 N, p ∝ e^{−r²/2σ²}, that circles around the patch's middle.
+/// A focus of 1 N, p ∝ e^{−r²/2σ²}, that circles the patch's middle.
 struct CirclingFocus {
   double radius = 10e-3, sigma = 4e-3;  ///< [m]
   double period = 10e-3;                ///< [s]
@@ -25,7 +25,7 @@ struct CirclingFocus {
   }
 };
 
-/// Returns the centre of cell (row, col) from the patch's middle [m].
+/// Returns the centre of cell (row, col) relative to the patch's middle [m].
 inline Vec2 cell_centre(const SkinPatch& patch, int row, int col) {
   return patch.cell * Vec2(col - 0.5 * (patch.cols - 1), row - 0.5 * (patch.rows - 1));
 }

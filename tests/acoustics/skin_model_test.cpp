@@ -17,18 +17,18 @@ double omega(double frequency) {
   return 2.0 * kPi * frequency;
 }
 
-TEST(SkinModel, HasTheSpeedsAndTheLossThatItWasGiven) {
+TEST(SkinModel, HasTheGivenSpeedsAndLoss) {
   for (const SkinSettings& settings : skin_settings_interval()) {
     const SkinModel skin(settings);
     EXPECT_NEAR(skin.phase_speed(omega(1e-4)), settings.slow_speed, 1e-6);
     EXPECT_NEAR(skin.phase_speed(omega(1e6)), settings.fast_speed, 1e-6);
     const Complex modulus = skin.shear_modulus(omega(1.0));
     EXPECT_NEAR(modulus.imag() / modulus.real(), settings.loss, 1e-12);
-    EXPECT_LT(skin.relaxation_time() * omega(1.0), 0.2);  // the branch well above 1 Hz
+    EXPECT_LT(skin.relaxation_time() * omega(1.0), 0.2);  // the relaxation lies well above 1 Hz
   }
 }
 
-// values of the nominal skin stated in docs/design/skin.md
+// values of the nominal skin, from docs/design/skin.md
 TEST(SkinModel, SpeedRisesToItsPlateau) {
   const SkinModel skin{SkinSettings{}};
   const double frequency[] = {10, 25, 50, 100, 200}, speed[] = {4.43, 5.92, 6.62, 6.89, 6.97};
@@ -67,7 +67,7 @@ TEST(SkinModel, ComplianceHasItsPoleAtTheSurfaceWave) {
     const Complex two = 2.0 * real * real - shear;
     const Complex r = two * two - 4.0 * real * real * real * std::sqrt(real * real - shear);
     const Complex expected = -real * shear / (skin.shear_modulus(w) * r);
-    // R itself loses digits if k_S is small against k
+    // R itself loses digits if k_S is small compared with k
     EXPECT_LT(std::abs(skin.compliance(real, w) - expected),
               1e-12 * std::abs(expected) * std::abs(real * real / shear + 1.0) + 1e-18);
   }
@@ -84,8 +84,8 @@ TEST(SkinModel, SlowPressureIndentsAsTheElasticHalfSpace) {
             Complex(0.0));  // the half-space cannot move as a whole
 }
 
-// A passive body absorbs work of the pressure: Re(P* iωW) ≥ 0, so Im T ≤ 0 for every pattern.
-TEST(SkinModel, TakesEnergyAndGivesNone) {
+// A passive body absorbs the work of the pressure: Re(P* iωW) ≥ 0, so Im T ≤ 0 for every pattern.
+TEST(SkinModel, IsPassive) {
   Random random(42);
   for (const SkinSettings& settings : skin_settings_interval()) {
     const SkinModel skin(settings);
@@ -96,7 +96,7 @@ TEST(SkinModel, TakesEnergyAndGivesNone) {
   }
 }
 
-TEST(SkinModel, FreeWavesSolveTheirCubic) {
+TEST(SkinModel, FreeWavesSolveTheirCubicEquation) {
   for (const SkinSettings& settings : skin_settings_interval()) {
     const SkinModel skin(settings);
     for (const double k : {5.0, 50.0, 300.0, 1500.0}) {

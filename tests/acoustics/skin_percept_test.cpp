@@ -20,14 +20,14 @@ TEST(SkinPercept, SensitivityHasItsSlopes) {
   EXPECT_EQ(pacinian_sensitivity(40.0), pacinian_sensitivity(1.0));
   EXPECT_NEAR(decibels(pacinian_sensitivity(800.0) / pacinian_sensitivity(400.0)), -9.03, 0.01);
   double before = pacinian_sensitivity(0.0);
-  for (double f = 1.0; f < 2000.0; f *= 1.01) {  // without steps
+  for (double f = 1.0; f < 2000.0; f *= 1.01) {  // continuous
     const double now = pacinian_sensitivity(f);
     EXPECT_LT(std::abs(decibels(now / before)), 0.2);
     before = now;
   }
 }
 
-/// Returns the response of a patch to one harmonic, a focus that is modulated in place.
+/// Returns the response of a patch to one harmonic, an amplitude-modulated focus at rest.
 SkinResponse modulated(const SkinPatch& patch, double frequency, double force) {
   SkinResponse response(SkinModel{SkinSettings{}}, patch);
   response.prepare(1.0 / frequency, 4, frequency);
@@ -42,7 +42,7 @@ SkinResponse modulated(const SkinPatch& patch, double frequency, double force) {
   return response;
 }
 
-TEST(SkinPercept, IntensityAddsOverAreaWhereItShould) {
+TEST(SkinPercept, IntensitySumsOverAreaAtHighFrequencies) {
   const SkinPatch patch{41, 41, 2e-3};
   for (const double f : {25.0, 40.0, 80.0, 250.0, 600.0}) {
     const SkinResponse response = modulated(patch, f, 1.0);
@@ -57,14 +57,14 @@ TEST(SkinPercept, IntensityAddsOverAreaWhereItShould) {
     std::vector<double> map(41 * 41);
     percept_map(response, map);
     EXPECT_NEAR(map[20 * 41 + 20] / (s * std::sqrt(most)), 1.0, 1e-12);
-    // twice the pressure is felt as twice the displacement
+    // doubling the pressure doubles the percept, expressed as a displacement
     EXPECT_NEAR(perceived_intensity(modulated(patch, f, 2.0)) / expected, 2.0, 1e-12);
   }
 }
 
-// Amplitude modulation uses the same model as moving focal points: the best rate is near 200 Hz, as
-// in threshold measurements with modulated ultrasound, although nothing was fitted to them.
-TEST(SkinPercept, AModulatedFocusIsFeltBestNearTwoHundredHertz) {
+// Amplitude modulation uses the same model as moving focal points: the optimum is near 200 Hz, as
+// in threshold measurements with modulated ultrasound, although the model was not fitted to them.
+TEST(SkinPercept, AModulatedFocusIsFeltBestNear200Hertz) {
   const SkinPatch patch{41, 41, 2.5e-3};
   double best = 0.0, most = 0.0;
   for (const double f : {40.0, 60.0, 100.0, 150.0, 200.0, 250.0, 300.0, 400.0, 600.0, 800.0}) {

@@ -16,7 +16,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Computes the displacement [m] at a cell and a time from the harmonics.
+/// Computes the displacement [m] at a cell and a time from its harmonics.
 double displacement_at(const SkinResponse& response, int cell, double time) {
   double sum = 0.0;
   for (int n = 1; n <= response.harmonics(); ++n) {
@@ -28,7 +28,7 @@ double displacement_at(const SkinResponse& response, int cell, double time) {
 
 // The same focus in time, without harmonics: w(x, t) = (2π)⁻² ∫∫ w_k(t) e^{ikx} d²k, where the
 // focus presses on the pattern e^{−ikx} with e^{−k²σ²/2 − ik x_f(t)}. Turning k by an angle equals
-// waiting until the focus has circled by that angle, so one direction is stepped for each |k|.
+// waiting until the focus has circled by that angle, so one direction is stepped per |k|.
 class SteppedFocus {
  public:
   SteppedFocus(const SkinModel& skin, const test::CirclingFocus& focus, int angles)
@@ -40,7 +40,7 @@ class SteppedFocus {
       course_.push_back(lap(skin, k, angles, every));
     }
   }
-  /// Returns the displacement without its mean over a lap. @param moment whole number of
+  /// Returns the displacement without its mean over a lap. @param moment integer multiple of
   /// period/angles
   double displacement(const Vec2& x, int moment) const {
     double sum = 0.0;
@@ -87,7 +87,7 @@ class SteppedFocus {
   std::vector<std::vector<Complex>> course_;
 };
 
-TEST(SkinResponse, IsWhatSteppingInTimeGives) {
+TEST(SkinResponse, MatchesTimeStepping) {
   const SkinModel skin{SkinSettings{}};
   test::CirclingFocus focus;
   focus.sigma = 6e-3;
@@ -127,9 +127,9 @@ std::vector<double> modulated_focus(const SkinPatch& patch, int row, int col, do
   return pressure;
 }
 
-// Far from a focus that is modulated in place, the phase turns with Re k_R and the amplitude falls
-// as e^{−αr}/√r: the surface wave.
-TEST(SkinResponse, APointSourceSendsTheSurfaceWave) {
+// Far from an amplitude-modulated focus at rest, the phase advances with Re k_R and the amplitude
+// falls as e^{−αr}/√r: the surface wave.
+TEST(SkinResponse, APointSourceEmitsTheSurfaceWave) {
   for (const SkinSettings& settings : skin_settings_interval()) {
     const SkinModel skin(settings);
     const double frequency = 80.0 * settings.fast_speed, omega = 2.0 * kPi * frequency;
@@ -141,7 +141,7 @@ TEST(SkinResponse, APointSourceSendsTheSurfaceWave) {
     const auto at = [&](int cells) {
       return response.displacement(1)[static_cast<std::size_t>(4 * patch.cols + 6 + cells)];
     };
-    // from 4 to 10 wavelengths away, phase differences between cells
+    // 4 to 10 wavelengths away, phase differences between cells
     double phase = 0.0;
     for (int r = 25; r < 65; ++r) phase -= std::arg(at(r + 1) / at(r));
     const double path = 40 * patch.cell;
@@ -196,7 +196,7 @@ TEST(SkinResponse, IsReciprocal) {
 }
 
 // Skin continues around the patch: the response does not depend on the patch's size.
-TEST(SkinResponse, TheEdgeOfThePatchSendsNothingBack) {
+TEST(SkinResponse, TheEdgeOfThePatchReflectsNothing) {
   const SkinModel skin{SkinSettings{}};
   test::CirclingFocus focus;
   focus.radius = 8e-3;
@@ -219,10 +219,10 @@ TEST(SkinResponse, TheEdgeOfThePatchSendsNothingBack) {
   EXPECT_LT(difference, 1e-6 * largest);
 }
 
-TEST(SkinResponse, ConvergesWithTheCell) {
+TEST(SkinResponse, ConvergesWithTheCellSize) {
   const SkinModel skin{SkinSettings{}};
   const test::CirclingFocus focus;
-  const auto amplitudes = [&](double cell) {  // at two places 24 mm apart
+  const auto amplitudes = [&](double cell) {  // at two positions 24 mm apart
     const int half = static_cast<int>(std::lround(24e-3 / cell));
     const SkinPatch patch{2 * half + 1, 2 * half + 1, cell};
     const SkinResponse response = test::response_to(focus, skin, patch, 32, 500.0);
@@ -251,8 +251,8 @@ TEST(SkinResponse, ConvergesWithTheCell) {
   EXPECT_GT(error(6e-3), error(3e-3));
 }
 
-// (S9) and (S11) without tables and transforms: one cell is pressed, and others answer.
-TEST(SkinResponse, IsTheSumOverWaveNumbers) {
+// (S9) and (S11) without tables and transforms: pressure on one cell, response of other cells.
+TEST(SkinResponse, MatchesTheSumOverWaveNumbers) {
   Random random(11);
   const SkinModel skin{SkinSettings{}};
   int next = 20;
@@ -287,7 +287,7 @@ TEST(SkinResponse, IsTheSumOverWaveNumbers) {
   }
 }
 
-TEST(SkinResponse, RespondAllocatesNothing) {
+TEST(SkinResponse, RespondDoesNotAllocate) {
   const SkinPatch patch{20, 30, 2e-3};
   SkinResponse response(SkinModel{SkinSettings{}}, patch);
   response.prepare(20e-3, 40);
@@ -299,7 +299,7 @@ TEST(SkinResponse, RespondAllocatesNothing) {
   EXPECT_EQ(guard.allocations(), 0u);
 }
 
-TEST(SkinResponse, MapsAndSpectraAreThoseOfTheHarmonics) {
+TEST(SkinResponse, MapsAndSpectraFollowFromTheHarmonics) {
   const SkinModel skin{SkinSettings{}};
   const test::CirclingFocus focus;
   const SkinPatch patch{21, 21, 2e-3};
@@ -308,7 +308,7 @@ TEST(SkinResponse, MapsAndSpectraAreThoseOfTheHarmonics) {
   std::vector<double> map(21 * 21), spectrum(10);
   rms_velocity(response, map);
   for (const int cell : {0, 100, 220, 440}) {
-    // over a lap, by differences in time
+    // over a lap, by finite differences in time
     double squares = 0.0;
     const int steps = 4000;
     for (int k = 0; k < steps; ++k) {

@@ -27,7 +27,7 @@ Complex stepped_compliance(const SkinModel& skin, double k, double frequency, do
     if (n >= (periods - 1) * per_period) {
       sum += stepper.displacement() * std::polar(2.0 / per_period, -phase);
     }
-    // grows slowly, so that hardly any other frequency is excited
+    // rises slowly, so that hardly any other frequency is excited
     const double rise = std::min(1.0, n * step / 0.03);
     stepper.step(std::cos(phase) * rise * rise * (3.0 - 2.0 * rise));
   }
@@ -64,15 +64,15 @@ double fitted_slope(const std::vector<double>& x, const std::vector<double>& y) 
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-// A pattern that is excited and then left alone rings as the surface wave of its wave number: its
+// A pattern that is excited and then released rings as the surface wave of its wave number: its
 // energy falls as e^{−2 Im Ω t} and it oscillates with Re Ω, (S5).
-TEST(SkinStepper, EnergyDecaysAsTheDampingSays) {
+TEST(SkinStepper, EnergyDecaysWithTheGivenDamping) {
   for (const SkinSettings& settings : {SkinSettings{}, skin_settings_interval()[8]}) {
     const SkinModel skin(settings);
     const double k = 250.0, step = 1e-5;
     const Complex wave = skin.surface_frequency(k);
     SkinStepper stepper(skin, k, step);
-    // fifteen periods at Ω excite it; after as many more the shear waves have left
+    // fifteen periods at Ω excite it; after fifteen more the shear waves have left
     const double period = 2.0 * kPi / wave.real();
     const auto count = [&](double periods) { return static_cast<int>(periods * period / step); };
     std::vector<double> times, logs, crossings, course;

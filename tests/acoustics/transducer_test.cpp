@@ -15,7 +15,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Returns the output of one transducer after a drive is held for n samples.
+/// Returns the output of one transducer after a constant drive of n samples.
 Complex held(TransducerDynamics& one, Complex drive, int n) {
   for (int i = 0; i < n; ++i) one.step(std::span(&drive, 1));
   return one.output()[0];
@@ -70,13 +70,13 @@ TEST(Transducer, HalfBandwidthIsFOver2Q) {
   const Complex output = held(one, 1.0, 500);
   EXPECT_NEAR(std::abs(output), std::sqrt(0.5), 1e-12);
   EXPECT_NEAR(std::arg(output), -0.25 * kPi, 1e-12);
-  // undriven it sounds at its own frequency: the phase turns by −2πδ a second, as in e^{−iωt}
+  // undriven it rings at its own frequency: the phase advances by −2πδ per second, as in e^{−iωt}
   const Complex next = held(one, 0.0, 1);
   EXPECT_NEAR(std::arg(next / output), -2.0 * kPi * settings.detuning / settings.sample_rate,
               1e-12);
 }
 
-TEST(Transducer, IsLinearAndEachForItself) {
+TEST(Transducer, IsLinearAndActsOnEachTransducerAlone) {
   Random random(31);
   const auto any = [&] { return Complex(random.normal(), random.normal()); };
   TransducerSettings settings;
@@ -93,7 +93,7 @@ TEST(Transducer, IsLinearAndEachForItself) {
   }
 }
 
-TEST(Transducer, WithoutMemoryTheOutputIsTheDrive) {
+TEST(Transducer, WithoutMemoryTheOutputEqualsTheDrive) {
   Random random(32);
   TransducerSettings settings;
   settings.memoryless = true;
@@ -106,7 +106,7 @@ TEST(Transducer, WithoutMemoryTheOutputIsTheDrive) {
   }
 }
 
-TEST(Transducer, FadesToSilenceAndIsSilentAfterReset) {
+TEST(Transducer, DecaysToSilenceAndIsSilentAfterReset) {
   TransducerDynamics one({}, 1);
   held(one, 1.0, 100);
   EXPECT_EQ(held(one, 0.0, 2000), Complex(0.0));
@@ -115,7 +115,7 @@ TEST(Transducer, FadesToSilenceAndIsSilentAfterReset) {
   EXPECT_EQ(one.output()[0], Complex(0.0));
 }
 
-TEST(Transducer, AStepAllocatesNothing) {
+TEST(Transducer, AStepDoesNotAllocate) {
   TransducerDynamics all({}, 256);
   const std::vector<Complex> drives(256, Complex(0.3, 0.4));
   const test::HeapGuard guard;
@@ -135,9 +135,9 @@ TEST(Transducer, SettingsAreChecked) {
   refused([](auto& s) { s.sample_rate = 0.0; });
 }
 
-/// Lag and strength of the field of a focus that moves through the origin along x at v.
+/// Lag and strength of the field of a focus that passes the origin along x at speed v.
 struct Moving {
-  double lag, share;  ///< [m] behind the requested place; relative to a focus at rest
+  double lag, share;  ///< [m] behind the commanded position; relative to a focus at rest
 };
 Moving moving_focus(double v) {
   const TransducerArray array = usx_array();
@@ -150,7 +150,7 @@ Moving moving_focus(double v) {
   std::vector<Complex> drives(count);
   constexpr int kSamples = 200;
   for (int n = 1; n <= kSamples; ++n) {
-    // the middle of each sample, so that x = 0 is requested at the end of the last one
+    // the middle of each sample, so that x = 0 is commanded at the end of the last one
     const double x = v * (n - 0.5 - kSamples) / settings.sample_rate;
     focus_phases(array, air, Vec3(x, 0.0, 0.2), phases);
     for (std::size_t i = 0; i < count; ++i) drives[i] = std::polar(1.0, phases[i]);
@@ -173,7 +173,7 @@ Moving moving_focus(double v) {
 
 TEST(Transducer, AFastFocalPointLagsAndIsWeaker) {
   const Moving slow = moving_focus(0.5), usual = moving_focus(7.0), fast = moving_focus(14.0);
-  EXPECT_NEAR(slow.lag, 0.5 * time_constant({}), 0.03e-3);  // v τ while slow
+  EXPECT_NEAR(slow.lag, 0.5 * time_constant({}), 0.03e-3);  // lag v τ at low speed
   EXPECT_NEAR(slow.share, 1.0, 1e-3);
   EXPECT_NEAR(usual.lag, 1.54e-3, 0.05e-3);
   EXPECT_NEAR(usual.share, 0.971, 0.002);

@@ -45,7 +45,7 @@ TargetField skin(int rows, int cols, double cell = 5e-3) {
   return target;
 }
 
-/// Computes (B1) to (B3) literally, with one loop each.
+/// Computes (B1) to (B3) literally, each as a plain loop.
 Plan plain_am(const TargetField& target, int count, double sigma) {
   std::vector<Vec2> centre;
   while (static_cast<int>(centre.size()) < count) {
@@ -98,7 +98,7 @@ Plan plain_am(const TargetField& target, int count, double sigma) {
   return plan;
 }
 
-TEST(AmPlanner, IsThePlainAlgorithm) {
+TEST(AmPlanner, MatchesThePlainAlgorithm) {
   Random random(4);
   for (int trial = 0; trial < 60; ++trial) {
     TargetField target = trial < 9
@@ -106,9 +106,9 @@ TEST(AmPlanner, IsThePlainAlgorithm) {
                              : skin(8 + random.below(20), 8 + random.below(20));
     if (trial >= 9) {
       test::add_blobs(target, random);
-      for (double& p : target.pressure) p += 1e-6;  // below 1e-12 of the highest counts as 0
+      for (double& p : target.pressure) p += 1e-6;  // values below 1e-12 of the highest count as 0
     }
-    // both decide by the same numbers
+    // both decide from the same numbers
     const double most = max_pressure(target);
     for (double& p : target.pressure) p = pressure_share(p, most);
     const int count = 1 + random.below(8);
@@ -124,7 +124,7 @@ TEST(AmPlanner, IsThePlainAlgorithm) {
   }
 }
 
-TEST(AmPlanner, ItsPressuresLeaveTheLeastError) {
+TEST(AmPlanner, PressuresMinimiseTheError) {
   Random random(8);
   for (int trial = 0; trial < 30; ++trial) {
     TargetField target = skin(12, 15);
@@ -163,7 +163,7 @@ TEST(AmPlanner, FourBlobsGetAFocusEach) {
   for (const FocalPoint& focus : plan.foci) {
     EXPECT_NEAR(std::abs(focus.position.x() - 0.08), 0.04, 1e-3);
     EXPECT_NEAR(std::abs(focus.position.y() - 0.08), 0.04, 1e-3);
-    EXPECT_NEAR(focus.pressure, 1.0, 0.01);  // φ itself, up to the others' tails
+    EXPECT_NEAR(focus.pressure, 1.0, 0.01);  // φ itself, up to the tails of the others
     EXPECT_NEAR(focus.pressure, plan.foci[0].pressure, 1e-9);
   }
   EXPECT_GT(score_plan(target, plan, 0, kSigma, GainLaw{}).correlation, 0.999);
@@ -179,7 +179,7 @@ TEST(AmPlanner, AWideFlatFieldGetsTwiceItsPressure) {
   EXPECT_NEAR(plan.foci[0].pressure, 6.0, 1e-3);
 }
 
-TEST(AmPlanner, OddFieldsAreOrdinary) {
+TEST(AmPlanner, UnusualFieldsArePlanned) {
   // one cell
   TargetField one = skin(5, 5);
   one.skin.assign(one.size(), 0);
@@ -189,12 +189,12 @@ TEST(AmPlanner, OddFieldsAreOrdinary) {
   EXPECT_EQ(plan.foci[0].position, one.position(2, 3));
   EXPECT_EQ(plan.foci[0].pressure, 7.0);
 
-  // two cells farther apart than σ, then nearer
+  // two cells farther apart than σ, then closer
   test::touch(one, 2, 1, 5.0);
   EXPECT_EQ(plan_of(one, settings_of(4)).foci.size(), 2u);
   EXPECT_EQ(plan_of(one, settings_of(4, 11e-3)).foci.size(), 1u);
 
-  // equal pressures: the raster's first cell is chosen first, repeatably
+  // equal pressures: the raster's first cell is chosen first, so results are repeatable
   TargetField flat = skin(9, 9);
   flat.pressure.assign(flat.size(), 1.0);
   plan = plan_of(flat, settings_of(3));
@@ -205,7 +205,7 @@ TEST(AmPlanner, OddFieldsAreOrdinary) {
     EXPECT_EQ(plan.foci[k].pressure, again.foci[k].pressure);
   }
 
-  // a ring whose middle no focus can serve
+  // a ring, whose middle no focus can render
   TargetField ring = skin(61, 61);
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const double r = (ring.position(i) - Vec2(0.15, 0.15)).norm();
@@ -233,7 +233,7 @@ TEST(AmPlanner, AnyFieldGivesAGoodPlanOrNone) {
     ASSERT_EQ(status == PlanStatus::InvalidTarget, field.kind == test::FieldKind::Invalid) << trial;
     ASSERT_EQ(plan.foci.empty(), status != PlanStatus::Planned) << trial;
     ASSERT_LE(plan.foci.size(), 8u);
-    const double reach = 1.2e5;  // e^12.5 in squares: the farthest skin that counts
+    const double reach = 1.2e5;  // 3 × this exceeds e^12.5, for skin at the limit of 5 σ
     for (const FocalPoint& focus : plan.foci) {
       ASSERT_TRUE(focus.position.allFinite()) << trial;
       ASSERT_GE(focus.pressure, 0.0) << trial;
@@ -271,7 +271,7 @@ TEST(AmPlanner, TwoHandsShareTheFoci) {
   EXPECT_GE(on[0], 1);
   EXPECT_GE(on[1], 1);
   EXPECT_EQ(on[0] + on[1], 4);
-  // each patch as if it were alone
+  // each patch is planned as if it were alone
   const Plan alone = plan_of(frame.patches[0], settings_of(on[0]));
   for (std::size_t k = 0; k < alone.foci.size(); ++k)
     EXPECT_EQ(plan.foci[k].position, alone.foci[k].position);
@@ -281,7 +281,7 @@ TEST(AmPlanner, TwoHandsShareTheFoci) {
   EXPECT_TRUE(plan.empty());
 }
 
-TEST(AmPlanner, AllocatesNothing) {
+TEST(AmPlanner, DoesNotAllocate) {
   TargetFrame frame;
   frame.patches.push_back(fields::make(fields::Pattern::Noise, 0));
   frame.patches.push_back(fields::make(fields::Pattern::Ring, 0));
@@ -306,7 +306,7 @@ TEST(AmPlanner, SettingsAreChecked) {
   EXPECT_THROW(AmPlanner(bad, 100), std::invalid_argument);
 }
 
-TEST(SetPressures, FociThatShareAPlaceLeaveOne) {
+TEST(SetPressures, OfCoincidingFociOneRemains) {
   TargetField target = skin(5, 5);
   target.pressure.assign(target.size(), 1.0);
   FocalPoints foci;
@@ -315,7 +315,7 @@ TEST(SetPressures, FociThatShareAPlaceLeaveOne) {
   EXPECT_EQ(foci.size(), 1u);
 }
 
-TEST(AmPlanner, TheUnitOfPressureMovesNoFocus) {
+TEST(AmPlanner, TheUnitOfPressureDoesNotMoveFoci) {
   for (const fields::Pattern pattern : fields::kPatterns) {
     const TargetField field = fields::make(pattern, 5);
     const Plan plan = plan_of(field, settings_of(4));

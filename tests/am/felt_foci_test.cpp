@@ -33,8 +33,8 @@ Plan plan_of(const TargetField& target, const AmSettings& settings) {
   return plan;
 }
 
-/// Returns S_8.5 of √e of Gaussian foci whose pressures are raised cosines with their phases, by
-/// the harmonic sum of the skin.
+/// Returns S_8.5 of √e, by the harmonic sum of the skin, for Gaussian foci whose pressures are
+/// raised cosines with the planned phases.
 double felt_skill_of(const Plan& plan, const TargetField& target) {
   constexpr int kSamples = 16;
   SkinResponse response(SkinModel(SkinSettings()), {target.rows, target.cols, target.cell});
@@ -59,7 +59,7 @@ double felt_skill_of(const Plan& plan, const TargetField& target) {
   return score_physical(target, percept, 0.0).skill_8;
 }
 
-TEST(FeltFoci, AreFeltMoreLikeTheTarget) {
+TEST(FeltFoci, RaiseTheFeltSkill) {
   double before = 0.0, after = 0.0;
   for (const fields::Pattern pattern : fields::kPatterns) {
     const TargetField target = fields::make(pattern, 20, 40);
@@ -69,7 +69,7 @@ TEST(FeltFoci, AreFeltMoreLikeTheTarget) {
   EXPECT_LT(after, 0.8 * before);
 }
 
-TEST(FeltFoci, StayWhereTheyAreAndNeedNoMoreOutput) {
+TEST(FeltFoci, KeepTheirPositionsAndNeedNoMoreOutput) {
   for (const fields::Pattern pattern : fields::kPatterns) {
     const TargetField target = fields::make(pattern, 20, 40);
     const Plan in_phase = plan_of(target, settings_of(0.0)),
@@ -89,11 +89,11 @@ TEST(FeltFoci, StayWhereTheyAreAndNeedNoMoreOutput) {
       }
       most = std::max(most, demand);
     }
-    EXPECT_LE(most, 1.15 * together);  // the 16-norm of 16 moments is not quite the largest
+    EXPECT_LE(most, 1.15 * together);  // the 16-norm of 16 instants is not quite the maximum
   }
 }
 
-TEST(FeltFoci, AreFiniteOnAnyTargetAndTheSameEachTime) {
+TEST(FeltFoci, AreFiniteForAnyTargetAndRepeatable) {
   Random random(21);
   const AmSettings settings = settings_of(0.9, 8);
   AmPlanner planner(settings, 64 * 64), again(settings, 64 * 64);
@@ -113,7 +113,7 @@ TEST(FeltFoci, AreFiniteOnAnyTargetAndTheSameEachTime) {
   }
 }
 
-TEST(FeltFoci, AllocateNothing) {
+TEST(FeltFoci, DoNotAllocate) {
   AmPlanner planner(settings_of(0.9), fields::kCells * fields::kCells);
   const TargetField field = fields::make(fields::Pattern::Ring, 1);
   Plan plan;

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "tests/support"))  # what the tests of the program and of the module share
+sys.path.append(str(ROOT / "tests/support"))  # shared by the tests of the program and of the module
 
 
 def pytest_configure(config):

@@ -93,7 +93,7 @@ def test_bad_npy_and_png(refuses, tmp_path):
 
 def hand_lines():
     header = {"format": "hand-frames", "version": 1, "units": "m"}
-    # straight fingers beside each other
+    # straight fingers side by side
     finger = [0] * 6 + [1 + j // 5 for j in range(20)]
     along = [0, 0, 0, 1, 2, 3] + [j % 5 for j in range(20)]
     position = [c for f, a in zip(finger, along) for c in (0.02 * f, 0.2, -0.03 * a)]
@@ -104,7 +104,7 @@ def hand_lines():
 @pytest.mark.parametrize("fault", ["joints", "nan", "infinite", "backwards", "empty", "truncated", "no frames"])
 def test_bad_recordings(refuses, tmp_path, fault):
     header, frames = hand_lines()
-    frames = frames[:3]  # of which a quarter may be bad
+    frames = frames[:3]  # a quarter of which may be bad
     if fault == "joints":
         frames[2]["hands"][0]["p"] = frames[2]["hands"][0]["p"][:75]
     if fault == "nan":
@@ -189,7 +189,7 @@ def test_a_recording_whose_hands_are_all_unsure(refuses, prostm, tmp_path):
         (["capture", "--frames", "0", "--out", "x.h5"], ["frames"]),
         (["report"], ["--out is missing", "prostm report --help"]),
         (["report", "--out", "x", "--seed", "-1"], ["--seed = -1", "between 0"]),
-        (["report", "--out", "x", "--paper-data", "nowhere"], ["--paper-data nowhere is no folder"]),
+        (["report", "--out", "x", "--paper-data", "nowhere"], ["--paper-data nowhere is not a folder"]),
         (["play", "x"], ["not built yet"]),
         (["study"], ["study needs one of its commands: check, run, status, analyse, simulate", "prostm study --help"]),
         (["study", "analize"], ['study has no command "analize"; did you mean "analyse"? See prostm study --help']),
@@ -225,7 +225,7 @@ def test_bad_options(refuses, args, words):
         ("[plan]\n\nspeed = 800\n", ["s.toml, line 3: plan.speed = 800 m/s must be between 0.1 and 8 m/s"]),
         ("[fluid]\ncells = 30\n", ["s.toml, line 2: fluid.cells = 30 must be between 32 and 160"]),
         ("speed = 8\n",
-         ['s.toml, line 1: "speed" stands outside a group of settings; did you mean [plan] speed?']),
+         ['s.toml, line 1: "speed" is outside a group of settings; did you mean [plan] speed?']),
         ("sigma = 8e-3\n", ["did you mean [plan] sigma or [am] sigma?"]),
         ("[plan\n", ["s.toml"]),
     ],
@@ -276,10 +276,10 @@ def test_unwritable_output(refuses, tmp_path):
 
 
 def test_full_disk(program, prostm, tmp_path):
-    """A file size limit stands in for a full disk: both make a write fail part of the way."""
+    """A file size limit emulates a full disk: both make a write fail part-way."""
     field = tmp_path / "field.json"
     field.write_text(json.dumps(dict(GOOD, rows=40, cols=40, pressure=np.random.default_rng(1).random((40, 40)).tolist())))
-    # the first picture on a machine also writes the system's cache of fonts, which must not meet the limit
+    # the first figure on a machine also writes the system's font cache, which must not reach the limit
     prostm("plan", field, "--figure", tmp_path / "first.png")
 
     def limit():
@@ -297,7 +297,7 @@ def test_full_disk(program, prostm, tmp_path):
 
 
 @pytest.mark.realtime
-def test_a_lack_of_memory_is_said_as_such(program, tmp_path):
+def test_a_lack_of_memory_is_reported_as_such(program, tmp_path):
     for arguments in (["run", "--seconds", "1"], ["capture", "--frames", "1", "--out", "o.h5"]):
         done = subprocess.run([str(program), *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=60,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (100 << 20, 100 << 20)))
@@ -342,7 +342,7 @@ def test_bad_foci(refuses, tmp_path, positions, words):
     refuses("solve", foci_file(tmp_path, *positions), words=words)
 
 
-def test_solve_refuses_what_it_does_not_know(refuses, tmp_path):
+def test_solve_rejects_unknown_values(refuses, tmp_path):
     good = foci_file(tmp_path, [0, 0, 200])
     refuses("solve", good, "--array", "disc", words=["disc", "usx", "autd3"])
     refuses("run", "--array", "disc", words=["disc", "usx", "autd3"])
@@ -353,7 +353,7 @@ def test_solve_refuses_what_it_does_not_know(refuses, tmp_path):
     refuses("solve", good, "--array", tmp_path / "array.json", words=["0 transducers"])
 
 
-def test_field_refuses_what_has_no_field(refuses, prostm, tmp_path):
+def test_field_rejects_plans_without_a_field(refuses, prostm, tmp_path):
     field, plan = tmp_path / "field.json", tmp_path / "plan.json"
     field.write_text(changed())
     prostm("plan", field, "--json", plan)

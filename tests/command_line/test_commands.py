@@ -50,7 +50,7 @@ def test_help_has_an_example(prostm):
         assert "Example:" in done.stdout
 
 
-def test_plan_file_says_what_the_design_says(prostm, field):
+def test_plan_files_follow_the_design(prostm, field):
     plan = plan_of(prostm, field)
     assert plan["format"] == "prostm-plan/1" and plan["preset"] == "best" and plan["method"] == "pro-stm"
     assert 1 <= len(plan["paths"]) <= 4
@@ -71,7 +71,7 @@ def test_plan_file_says_what_the_design_says(prostm, field):
     assert plan["settings"]["plan"]["draw_rate"] == 50
 
 
-def test_quality_is_that_of_what_the_emission_makes_of_a_plan(prostm, field, tmp_path):
+def test_quality_is_that_of_the_played_plan(prostm, field, tmp_path):
     plain = plan_of(prostm, field)
     for settings in ["power_limit = 0.5", "full_scale_pressure = 0.2", "fade_time = 0.02"]:
         (tmp_path / "emit.toml").write_text(f"[emit]\n{settings}\n")
@@ -97,7 +97,7 @@ def test_a_stronger_field_gives_the_same_paths(prostm, field, tmp_path):
         assert [1024 * p for p in weak_path["pressure"]] == strong_path["pressure"]
 
 
-def test_weights_draw_the_path_to_where_errors_count_more(prostm, field, tmp_path):
+def test_weights_attract_the_path_to_errors_that_count_more(prostm, field, tmp_path):
     two = blob_field()
     pressure = np.zeros((20, 40))
     pressure[8:12, 6:10] = pressure[8:12, 30:34] = 1
@@ -114,14 +114,14 @@ def test_weights_draw_the_path_to_where_errors_count_more(prostm, field, tmp_pat
     assert "by the field's weights" in prostm("plan", path).stdout
     assert "by the field's weights" not in prostm("plan", field).stdout
 
-    # if no pressure has a weight there is nothing to plan
+    # if no pressure has a weight, there is nothing to plan
     two["weight"] = (pressure == 0).astype(int).tolist()
     path.write_text(json.dumps(two))
     assert "no pressure where its weight is above 0" in prostm("plan", path).stdout
     assert prostm("plan", path, "--preset", "paper").stdout.count("path ") > 1
 
 
-def test_the_settings_of_touch_weigh_a_captured_hand(prostm, refuses, tmp_path):
+def test_the_touch_settings_weight_a_captured_hand(prostm, refuses, tmp_path):
     finer = tmp_path / "finer.toml"
     finer.write_text("[contact]\ntouch_palm = 1\ntouch_finger = 3\ntouch_tip = 7\n")
     capture = ["capture", "--scene", "four-plumes", "--grid", "32", "--frames", "2", "--out"]
@@ -145,7 +145,7 @@ def test_every_field_format_gives_the_same_plan(prostm, field, tmp_path):
     from_npy = plan_of(prostm, tmp_path / "blob.npy", "--cell-mm", "5")
     assert from_json["paths"] == from_npy["paths"]
 
-    # a PNG has 8 bits: the field rounded to them, with row 0 at the largest y
+    # a PNG has 8 bits: the field is rounded to them, with row 0 at the largest y
     grey = np.round(255 * pressure / pressure.max()).astype(np.uint8)
     write_grey_png(tmp_path / "blob.png", grey[::-1])
     np.save(tmp_path / "grey.npy", grey.astype(float))
@@ -184,7 +184,7 @@ def finite_or_null(value):
     return not isinstance(value, float) or math.isfinite(value)
 
 
-def test_run_makes_recording_picture_and_summary(prostm, tmp_path):
+def test_run_writes_a_recording_a_figure_and_a_summary(prostm, tmp_path):
     recording, figure = tmp_path / "run.h5", tmp_path / "run.png"
     summary = run_summary(prostm, "--as-fast-as-possible", "--record", recording, "--figure", figure)
     assert summary["format"] == "prostm-run/1" and finite_or_null(summary)
@@ -213,7 +213,7 @@ def test_in_still_air_the_hand_feels_its_own_movement(prostm):
 
 
 @pytest.mark.long
-def test_the_setting_of_the_am_method_s_paper(prostm):
+def test_the_settings_of_the_am_papers_method(prostm):
     done = prostm("run", "--method", "am", "--settings", ROOT / "data/barreiro-2019.toml", "--stepped", "--seconds", "0.2",
                   "--json", "-")
     summary = json.loads(done.stdout)
@@ -236,7 +236,7 @@ def test_run_plays_any_array(prostm, tmp_path, array):
 @pytest.mark.parametrize("given, own_width", [
     ("[plan]\n", True), ("plan.sigma = 8.6e-3", False), ("am.sigma = 8.6e-3", True),
     ("pipeline.array_width = false", False), ("plan.sigma = 8.6e-3\npipeline.array_width = true", True)])
-def test_a_run_counts_on_the_width_of_its_array_unless_another_is_given(prostm, tmp_path, given, own_width):
+def test_a_run_uses_the_width_of_its_array_unless_another_is_given(prostm, tmp_path, given, own_width):
     (tmp_path / "s.toml").write_text(given)
     prostm("run", "--stepped", "--grid", "32", "--seconds", "0.1", "--settings", "s.toml", "--record", "run.h5")
     with h5py.File(tmp_path / "run.h5") as h5:
@@ -276,7 +276,7 @@ def test_capture_then_bench_then_plan_a_frame(prostm, tmp_path):
     assert plan["paths"]
 
 
-def test_devices_says_what_a_link_carries(prostm):
+def test_devices_reports_the_capacity_of_a_link(prostm):
     rows = json.loads(prostm("devices", "--budget", "--json", "-").stdout)
     frames = {(row["slots"], row["divider"], round(row["block_ms"])): row["block_frames"] for row in rows}
     assert [frames[8, 5, ms] for ms in (10, 20, 40)] == [9, 18, 36]
@@ -286,7 +286,7 @@ def test_devices_says_what_a_link_carries(prostm):
     assert "slots" in table and len(table.splitlines()) > 90
 
 
-def test_devices_says_what_was_not_tried(prostm):
+def test_devices_reports_untested_devices(prostm):
     done = prostm("devices", "--json", "-")
     kinds = {row["kind"]: row for row in json.loads(done.stdout)}
     assert kinds["sim"]["available"] and not kinds["ultraleap"]["available"]
@@ -390,7 +390,7 @@ def test_am_plans_foci(prostm, field, tmp_path):
     assert "focus 1: at" in prostm("plan", field, "--method", "am", "--paths", "3").stdout
 
 
-def test_am_finds_nothing_where_there_is_nothing(prostm, tmp_path):
+def test_am_finds_no_foci_without_pressure(prostm, tmp_path):
     empty = blob_field()
     empty["pressure"] = (0 * np.array(empty["pressure"])).tolist()
     path = tmp_path / "empty.json"
@@ -403,7 +403,7 @@ def test_am_runs_and_records_foci(prostm, tmp_path):
     figure = tmp_path / "am.png"
     summary = run_summary(prostm, "--method", "am", "--as-fast-as-possible", "--record", files[0], "--figure", figure)
     assert summary["method"] == "am" and finite_or_null(summary)
-    assert summary["plans"] + summary["empty_updates"] == 400  # an update each fluid step: 50 Hz
+    assert summary["plans"] + summary["empty_updates"] == 400  # one update per fluid step: 50 Hz
     assert summary["plans"] > 100 and summary["max_focus_step_mm"] == 0 and summary["stage_ms"]["plan"]["p50"] < 4
     # the frame's own step, the zero of the envelope, and the device
     assert summary["latency_ms"]["p99"] < 40
@@ -463,9 +463,9 @@ def test_field_of_a_plan(prostm, field, tmp_path):
     assert quick["felt"]["metrics"] is None and quick["felt"]["ghosts"] is None and quick["felt"]["largest_um"] > 0
     assert quick["envelope"]["metrics"] is None and quick["array"] == "autd3"
     told = prostm("field", "plan.json", "--field", field).stdout
-    assert "for comparison only" in told and "worst side lobe" in told
+    assert "for comparison only" in told and "largest side lobe" in told
 
-    # with an array the percept of a plan is reported, even if no other option needs it
+    # with an array the percept of a plan is always reported
     told = prostm("plan", field, "--array", "usx", "--json", "felt.json").stdout
     plan = json.loads((tmp_path / "felt.json").read_text())
     assert " felt" in told and "felt_skill" not in plan["planned_metrics"]
@@ -502,7 +502,7 @@ def test_plans_in_step_and_foci_with_phases_have_fields(prostm, field, tmp_path)
 
 
 @pytest.mark.long
-def test_a_louder_full_scale_is_short(prostm, field):
+def test_an_unreachable_full_scale_is_reported(prostm, field):
     prostm("plan", field, "--json", "plan.json")
     quiet, loud = (json.loads(prostm("field", "plan.json", "--full-scale-pa", p, "--json", "-").stdout) for p in (100, 1e5))
     assert quiet["drives"]["short_samples"] == 0 and quiet["drives"]["full_scale_pa"] == 100
@@ -523,7 +523,7 @@ def test_widths_of_a_focus(prostm, field, tmp_path):
     assert plan["sigma_mm"] == pytest.approx(1e3 * plan["settings"]["plan"]["sigma"])
     [at] = plan["metrics_at"]
     assert at["sigma_mm"] == 8.6 and at["metrics"]["rmse"] != plan["metrics"]["rmse"]
-    # the paper's presets keep their width, and report metrics at the array's
+    # the paper's presets keep their width, and report metrics at the array's width
     paper = plan_of(prostm, field, "--array", "usx", "--preset", "paper-valid")
     assert paper["sigma_mm"] == 8.6 and paper["metrics_at"][0]["sigma_mm"] == pytest.approx(plan["sigma_mm"])
     assert "focus of usx on the skin" in prostm("plan", field, "--array", "usx").stdout
@@ -531,7 +531,7 @@ def test_widths_of_a_focus(prostm, field, tmp_path):
 
 @pytest.mark.parametrize("shape", [(1, 20), (20, 1), (1, 1)])
 @pytest.mark.parametrize("method", ["pro-stm", "am"])
-def test_a_raster_of_one_row_or_column_goes_through_every_command(prostm, tmp_path, shape, method):
+def test_a_raster_of_one_row_or_column_works_in_every_command(prostm, tmp_path, shape, method):
     np.save(tmp_path / "line.npy", np.ones(shape))
     line = ["line.npy", "--cell-mm", "5"]
     prostm("plan", *line, "--method", method, "--json", "plan.json", "--figure", "plan.svg", "--array", "usx")
@@ -548,8 +548,8 @@ def test_the_plan_of_the_documentation_has_a_field(prostm, tmp_path):
     assert "radiation pressure on the skin" in prostm("field", "plan.json").stdout
 
 
-def test_the_program_is_compiled_for_no_machine_in_particular(program):
-    """Code for newer machines is chosen at run time, not by compiler options."""
+def test_the_program_is_not_compiled_for_a_particular_machine(program):
+    """Code for newer machines is selected at run time, not by compiler options."""
     commands = json.loads((program.parent / "compile_commands.json").read_text())
     # only benchmarks, which are not installed, may be compiled for the build machine
     mine = [c for c in commands if "/bench/" not in c["file"]]

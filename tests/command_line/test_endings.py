@@ -1,4 +1,4 @@
-"""Early ends of commands, by signals and full disks: finished results are kept and reported."""
+"""Early termination of commands, by signals and full disks: finished results are kept and reported."""
 
 import json
 import os
@@ -15,11 +15,11 @@ from test_commands import blob_field
 
 
 def start(program, folder, *arguments, limit=None):
-    """Starts a recorded run that would take ten minutes; no file grows beyond `limit` [bytes]."""
+    """Starts a recorded run of ten minutes; no file grows beyond `limit` [bytes]."""
 
     def prepare():
         signal.signal(signal.SIGHUP, signal.SIG_DFL)
-        if limit is not None:  # stands for a full disk
+        if limit is not None:  # emulates a full disk
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 
@@ -30,9 +30,9 @@ def start(program, folder, *arguments, limit=None):
         preexec_fn=prepare, restore_signals=False)
 
 
-# batch systems warn by USR1, USR2 or ALRM before they kill, and ulimit -t by XCPU
+# batch systems warn with USR1, USR2 or ALRM before they kill, and ulimit -t with XCPU
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGALRM", "SIGXCPU"])
-def test_a_signal_ends_a_run_whole(program, tmp_path, name):
+def test_a_signal_ends_a_run_with_complete_files(program, tmp_path, name):
     running = start(program, tmp_path)
     part = tmp_path / "run.h5.part.h5"
     wait_for(part.exists)
@@ -53,7 +53,7 @@ def test_a_signal_ends_a_run_whole(program, tmp_path, name):
     assert (tmp_path / "run.png").exists() or "no picture was drawn in run.png" in out
 
 
-def test_a_second_signal_ends_at_once_as_the_shell_says(program, tmp_path):
+def test_a_second_signal_ends_at_once_with_the_shells_status(program, tmp_path):
     running = start(program, tmp_path, "--as-fast-as-possible")
     wait_for((tmp_path / "run.h5.part.h5").exists)
     running.send_signal(signal.SIGSTOP)
@@ -65,7 +65,7 @@ def test_a_second_signal_ends_at_once_as_the_shell_says(program, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["SIGHUP", "SIGUSR1"])
-def test_a_signal_that_is_ignored_stays_ignored(program, tmp_path, name):
+def test_an_ignored_signal_stays_ignored(program, tmp_path, name):
     number = getattr(signal, name)
     running = subprocess.Popen([str(program), "run", "--grid", "32", "--seconds", "2", "--json", "run.json"], cwd=tmp_path,
                                stdout=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(number, signal.SIG_IGN))
@@ -87,7 +87,7 @@ def test_a_full_disk_ends_a_run(program, tmp_path, pace):
     summary = json.loads((tmp_path / "run.json").read_text())
     assert summary["stopped"] is True and "prostm: " + summary["failure"] == lines[0]
     assert not (tmp_path / "run.h5").exists()
-    assert "what was recorded until then is in run.h5.part.h5" in lines[0]
+    assert "the recording up to then is in run.h5.part.h5" in lines[0]
     with h5py.File(tmp_path / "run.h5.part.h5") as h5:
         assert len(h5["frame/time"]) > 0
 
@@ -101,7 +101,7 @@ def test_a_full_disk_ends_a_run(program, tmp_path, pace):
     ["run", "--stepped", "--grid", "32", "--seconds", "0.1"],
     ["run", "--stepped", "--grid", "32", "--seconds", "0.1", "--json", "-"],
 ])
-def test_a_full_standard_output_is_told(program, tmp_path, arguments):
+def test_a_full_standard_output_is_reported(program, tmp_path, arguments):
     with open("/dev/full", "w") as full:
         done = subprocess.run([str(program), *arguments], cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=full,
                               stderr=subprocess.PIPE, text=True, timeout=60)
@@ -111,7 +111,7 @@ def test_a_full_standard_output_is_told(program, tmp_path, arguments):
 
 
 @pytest.mark.parametrize("names", [["plan.json"], ["plan.svg", "plan.json"]])
-def test_files_are_whole_where_nobody_reads_on(program, tmp_path, names):
+def test_files_are_complete_if_the_reader_of_a_pipe_leaves(program, tmp_path, names):
     (tmp_path / "blob.json").write_text(json.dumps(blob_field()))
     reading, writing = os.pipe()
     os.close(reading)
@@ -123,7 +123,7 @@ def test_files_are_whole_where_nobody_reads_on(program, tmp_path, names):
     assert all((tmp_path / name).stat().st_size > 0 for name in names)
 
 
-def test_files_are_whole_where_standard_output_is_full(program, tmp_path):
+def test_files_are_complete_if_standard_output_is_full(program, tmp_path):
     with open("/dev/full", "w") as full:
         done = subprocess.run([str(program), "run", "--stepped", "--grid", "32", "--seconds", "1", "--json", "run.json",
                                "--record", "run.h5"], cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)

@@ -1,4 +1,4 @@
-"""Plans whose pressures are chosen by what is felt: what prostm says of them, and what it refuses."""
+"""Plans that optimise the felt field: how prostm describes them, and which options it rejects."""
 
 import json
 import re
@@ -33,7 +33,7 @@ def line_with(text, words):
     return lines[0]
 
 
-def test_the_weight_is_off_and_both_methods_have_it(prostm):
+def test_the_weight_is_off_by_default_and_exists_for_both_methods(prostm):
     rows = json.loads(prostm("settings", "felt_weight", "--json", "-").stdout)["settings"]
     assert [(row["group"], row["value"], row["least"], row["most"]) for row in rows] == [
         ("plan", 0, 0, 1), ("am", 0, 0, 1)]
@@ -45,7 +45,7 @@ def test_the_weight_is_off_and_both_methods_have_it(prostm):
 
 
 @pytest.mark.parametrize("points, chosen", [("false", "pressures"), ("true", "points and pressures")])
-def test_one_line_says_what_was_chosen_and_that_nobody_has_felt_it(prostm, settings, points, chosen):
+def test_one_line_reports_the_optimisation_and_that_it_is_untested_on_people(prostm, settings, points, chosen):
     file = settings(f"[plan]\nfelt_weight = 0.9\nfelt_points = {points}\n")
     line = line_with(prostm("plan", FIELD, "--settings", file).stdout, "nobody has felt it")
     plan = plan_of(prostm, "--settings", file)
@@ -59,7 +59,7 @@ def test_one_line_says_what_was_chosen_and_that_nobody_has_felt_it(prostm, setti
     assert plan["paths"] == plan_of(prostm, "--settings", file)["paths"]
 
 
-def test_am_says_it_too(prostm, settings):
+def test_am_reports_it_too(prostm, settings):
     file = settings("[am]\nfelt_weight = 0.5\n")
     text = prostm("plan", FIELD, "--method", "am", "--settings", file).stdout
     assert line_with(text, "nobody has felt it") == (
@@ -68,7 +68,7 @@ def test_am_says_it_too(prostm, settings):
     assert "felt it" not in prostm("plan", FIELD, "--settings", file).stdout
 
 
-def test_the_verdict_is_of_what_is_felt_where_an_array_is_given(prostm, settings):
+def test_with_an_array_the_verdict_is_about_the_felt_field(prostm, settings):
     file = settings("[plan]\nfelt_weight = 0.9\n")
     end = " (1 is perfect, 0 is no better than an even field)"
     metrics = plan_of(prostm, "--array", "usx", "--settings", file)["metrics"]
@@ -81,10 +81,10 @@ def test_the_verdict_is_of_what_is_felt_where_an_array_is_given(prostm, settings
                         f"--array judges what is felt{end}")
 
 
-def test_pressure_that_loses_to_a_control_does_not_say_that_what_is_felt_does(prostm, settings):
+def test_a_pressure_field_that_loses_to_a_control_does_not_imply_that_the_felt_field_does(prostm, settings):
     palm = [ROOT / "data" / "palm.npy", "--cell-mm", "5", "--method", "am"]
     warning = line_with(prostm("plan", *palm).stdout, "loses to the control")
-    assert warning.endswith(": what is felt will hardly resemble the field")
+    assert warning.endswith(": the percept will hardly resemble the field")
     warning = line_with(prostm("plan", *palm, "--settings", settings("[am]\nfelt_weight = 1\n")).stdout, "loses to")
     assert warning.endswith(": its pressure hardly resembles the field")
 
@@ -109,7 +109,7 @@ def test_the_arrays_own_field_is_felt_more_like_the_target(prostm, settings):
     ("[plan]\nfelt_weight = 0.9\n", ["--preset", "paper-valid"],
      "felt_weight is for presets best and fast, not paper-valid"),
 ])
-def test_what_is_refused(refuses, settings, text, options, words):
+def test_invalid_options_are_rejected(refuses, settings, text, options, words):
     refuses("plan", FIELD, "--settings", settings(text), *options, words=[words])
 
 

@@ -1,5 +1,5 @@
-"""Fields in files of other programs: archives, frames of arrays, rounding, pictures of 16 bits, standard input, long names,
-and how to convert what is not read."""
+"""Fields in files of other programs: archives, frames of arrays, rounding, images of 16 bits, standard input, long names,
+and how to convert formats that are not supported."""
 
 import json
 import struct
@@ -14,13 +14,13 @@ SIZE = ["--cell-mm", "5", "--preset", "fast"]
 
 
 def pressures_of(prostm, *arguments):
-    """Returns the first line that plan prints of a field, and its largest pressure."""
+    """Returns the first line that plan prints about a field, and the field's largest pressure."""
     lines = prostm("plan", *arguments, *SIZE).stdout.splitlines()
     return lines[0], float(lines[0].split("largest pressure ")[1].split()[0])
 
 
 def write_png(path, depth, colour, rows):
-    """rows: bytes of each row, top first."""
+    """rows: the bytes of each row, top row first."""
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     channels = {0: 1, 2: 3, 4: 2, 6: 4}[colour]
@@ -48,7 +48,7 @@ def test_archives_of_arrays(prostm, refuses, tmp_path):
     changed = bytearray((tmp_path / "one.npz").read_bytes())
     changed[200] ^= 1
     (tmp_path / "changed.npz").write_bytes(changed)
-    refuses("plan", "changed.npz", *SIZE, words=["cut off or broken"])
+    refuses("plan", "changed.npz", *SIZE, words=["truncated or damaged"])
 
 
 @pytest.mark.parametrize("order", "CF")
@@ -71,7 +71,7 @@ def test_frames_of_an_array(prostm, refuses, tmp_path):
     refuses("plan", "a.npy", *SIZE, "--frame", "3", words=["no frame 3"])
 
 
-def test_a_solvers_rounding_is_no_suction(prostm, refuses, tmp_path):
+def test_rounding_errors_of_a_solver_are_not_suction(prostm, refuses, tmp_path):
     field = BLOB.copy()
     field[0, 0] = -1e-18
     np.save(tmp_path / "a.npy", field)
@@ -94,18 +94,18 @@ def test_json_of_python_and_of_unequal_cells(refuses, tmp_path):
     refuses("plan", "a.json", words=["cell_mm", "cells are square", "resample"])
 
 
-def test_a_picture_of_16_bits_keeps_them(prostm, tmp_path):
+def test_a_16_bit_image_keeps_its_precision(prostm, tmp_path):
     weak = np.round(200 * BLOB).astype(">u2")
     write_png(tmp_path / "a.png", 16, 0, [row.tobytes() for row in weak])
     assert pressures_of(prostm, "a.png")[1] == pytest.approx(200 / 65535, rel=0.01)
 
 
 @pytest.mark.parametrize("ink, options", [(255, []), (0, ["--invert"])])
-def test_a_drawing_in_alpha_alone_is_not_planned_without_a_word(prostm, tmp_path, ink, options):
+def test_a_drawing_in_the_alpha_channel_alone_gets_a_warning(prostm, tmp_path, ink, options):
     alpha = np.round(255 * BLOB).astype(np.uint8)
     alpha[alpha < 10] = 0
     write_png(tmp_path / "a.png", 8, 4, [np.stack([np.full(11, ink, np.uint8), row], -1).tobytes() for row in alpha])
-    assert "its shape lies in its transparency alone" in prostm("plan", "a.png", *SIZE, *options).stdout
+    assert "its shape lies only in its transparency" in prostm("plan", "a.png", *SIZE, *options).stdout
 
 
 def test_fields_and_plans_from_standard_input(program, prostm, refuses, tmp_path):
@@ -124,7 +124,7 @@ def test_fields_and_plans_from_standard_input(program, prostm, refuses, tmp_path
     assert piped((tmp_path / "a.png").read_bytes(), "plan", "-", *SIZE).returncode == 0
     plan = piped((tmp_path / "a.npy").read_bytes(), "plan", "-", *SIZE, "--json", "-").stdout
     assert piped(plan, "field", "-", "--json", "f.json").returncode == 0
-    for data, words in ((b"", "is empty"), (b"hello", "carries no field"), (b"\x89HDF\r\n\x1a\n", "carries an HDF5 file")):
+    for data, words in ((b"", "is empty"), (b"hello", "contains no field"), (b"\x89HDF\r\n\x1a\n", "contains an HDF5 file")):
         result = piped(data, "plan", "-", *SIZE)
         assert result.returncode == 2 and words in result.stderr.decode() and result.stderr.count(b"\n") == 1
     refuses("field", "-", "--field", "-", words=["cannot both read standard input"])
@@ -132,7 +132,7 @@ def test_fields_and_plans_from_standard_input(program, prostm, refuses, tmp_path
 
 
 @pytest.mark.parametrize("letter", ["a", "é", "日"])
-def test_output_names_as_long_as_the_file_system_takes(prostm, tmp_path, letter):
+def test_output_names_may_be_as_long_as_the_file_system_allows(prostm, tmp_path, letter):
     np.save(tmp_path / "a.npy", BLOB)
 
     def longest(ending):
@@ -151,6 +151,6 @@ def test_options_after_the_end_of_options(refuses, tmp_path):
 
 @pytest.mark.parametrize("ending, words", [("vti", "z, y, x"), ("VDB", "a[:, :, k].T"), ("mat", "loadmat"),
                                            ("tiff", "[::-1]"), ("jpg", ".png"), ("csv", "loadtxt"), ("nc", "xarray")])
-def test_files_that_are_not_read_are_converted_with_one_line(refuses, tmp_path, ending, words):
+def test_unsupported_files_get_a_one_line_conversion(refuses, tmp_path, ending, words):
     (tmp_path / f"a.{ending}").write_bytes(b"x")
-    refuses("plan", f"a.{ending}", *SIZE, words=["of no known kind", words])
+    refuses("plan", f"a.{ending}", *SIZE, words=["of an unknown kind", words])

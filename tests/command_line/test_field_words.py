@@ -1,4 +1,4 @@
-"""prostm plan says how it understood a field, judges its plan in a sentence, and warns of likely mistakes."""
+"""prostm plan describes how it read a field, evaluates its plan in a sentence, and warns about likely mistakes."""
 
 import json
 
@@ -11,14 +11,14 @@ from test_commands import blob_field
 
 
 def drawing(side=40):
-    """Two blots of ink on white paper, grey values with the top row first."""
+    """Two blots of ink on white paper: grey values, top row first."""
     y, x = np.mgrid[0:side, 0:side]
     ink = np.exp(-((x - 13) ** 2 + (y - 15) ** 2) / 30) + np.exp(-((x - 27) ** 2 + (y - 24) ** 2) / 40)
     return np.round(255 * (1 - np.clip(ink, 0, 1))).astype(np.uint8)
 
 
 def planned(prostm, *arguments):
-    """Lines of prose and the plan."""
+    """The lines of prose, and the plan."""
     done = prostm("plan", *arguments, "--json", "-")
     return done.stderr.splitlines(), json.loads(done.stdout)
 
@@ -27,7 +27,7 @@ def warnings_in(lines):
     return [line.removeprefix("warning: ") for line in lines if line.startswith("warning: ")]
 
 
-def test_what_was_read(prostm, tmp_path):
+def test_describes_what_was_read(prostm, tmp_path):
     field = blob_field()
     (tmp_path / "blob.json").write_text(json.dumps(field))
     lines, plan = planned(prostm, "blob.json")
@@ -46,7 +46,7 @@ def test_what_was_read(prostm, tmp_path):
     assert line.startswith("a.h5, frame 0: ") and line.endswith(" Pa")
 
 
-def test_a_verdict_comes_before_the_numbers(prostm, tmp_path):
+def test_the_verdict_precedes_the_numbers(prostm, tmp_path):
     (tmp_path / "blob.json").write_text(json.dumps(blob_field()))
     lines, plan = planned(prostm, "blob.json")
     skill = plan["metrics"]["skill_0"]
@@ -59,7 +59,7 @@ def test_a_verdict_comes_before_the_numbers(prostm, tmp_path):
     assert f"this even field with an error (RMSE) of {plan['metrics']['rmse']:.2f} of its pressure" in lines[1]
 
 
-def test_a_photo_is_no_drawing(prostm, tmp_path):
+def test_a_photo_is_not_a_drawing(prostm, tmp_path):
     y, x = np.mgrid[0:40, 0:40] / 39.0
     photo = np.uint8(90 + 60 * np.sin(5 * x + 2 * y) + 50 * np.cos(3 * x * y) + 40 * y)
     write_grey_png(tmp_path / "photo.png", photo)
@@ -80,7 +80,7 @@ def test_ink_on_white_paper(prostm, tmp_path):
                         "black is full scale and white is no pressure")
     assert plan["warnings"] == warnings_in(lines) == [] and plan["metrics"]["skill_0"] > 0.5
 
-    # the same as a picture of the other kind, which an inversion spoils
+    # same as an image of the other kind, for which an inversion would be wrong
     write_grey_png(tmp_path / "light.png", 255 - drawing())
     light = planned(prostm, "light.png", "--width-mm", "120")[1]
     assert light["paths"] == plan["paths"]
@@ -90,7 +90,7 @@ def test_ink_on_white_paper(prostm, tmp_path):
 
 @pytest.mark.parametrize("grey", [255, 90, 0])
 @pytest.mark.parametrize("options", [[], ["--invert"]])
-def test_an_even_picture_has_nothing_to_plan(prostm, tmp_path, grey, options):
+def test_a_uniform_image_has_nothing_to_plan(prostm, tmp_path, grey, options):
     write_grey_png(tmp_path / "even.png", np.full((12, 12), grey, np.uint8))
     told = warnings_in(planned(prostm, "even.png", "--width-mm", "60", *options)[0])
     assert told == ["the picture is the same everywhere, so it has no shape to plan"]
@@ -104,17 +104,17 @@ def test_ink_on_a_transparent_ground(prostm, tmp_path):
         write_grey_png(tmp_path / f"{name}.png", pixels.astype(np.uint8))
     lines, plan = planned(prostm, "black.png", "--width-mm", "100")
     assert plan["paths"] == [] and warnings_in(lines) == plan["warnings"] == [
-        "the picture is black wherever it is not transparent, and black is no pressure; try --invert, and fill the "
-        "transparent ground with white if it is to be skin too"]
+        "the picture is black wherever it is not transparent, and black means no pressure; try --invert, and fill the "
+        "transparent background with white if it should be skin too"]
     lines, plan = planned(prostm, "black.png", "--width-mm", "100", "--invert")
     [alone] = plan["warnings"]
-    assert len(plan["paths"]) > 0 and "its shape lies in its transparency alone" in alone
+    assert len(plan["paths"]) > 0 and "its shape lies only in its transparency" in alone
     assert planned(prostm, "white.png", "--width-mm", "100")[1]["warnings"] == [alone]
     [warning] = planned(prostm, "white.png", "--width-mm", "100", "--invert")[1]["warnings"]
-    assert "white is no pressure; try without --invert" in warning and "ground with black" in warning
+    assert "white means no pressure; try without --invert" in warning and "background with black" in warning
     write_grey_png(tmp_path / "clear.png", np.zeros((12, 12, 2), np.uint8))
     assert planned(prostm, "clear.png", "--width-mm", "100")[1]["warnings"] == [
-        "the picture is transparent everywhere, and transparent is no skin"]
+        "the picture is transparent everywhere, and transparent means no skin"]
 
 
 def test_a_frame_without_a_hand_names_the_first_with_one(prostm, refuses, tmp_path):
@@ -148,7 +148,7 @@ def test_larger_than_a_hand(prostm, tmp_path):
 
 @pytest.mark.long
 def test_a_plan_that_loses_to_a_control(prostm, tmp_path):
-    # white paper with a little ink: nothing that a few paths could render
+    # white paper with a little ink: more than a few paths can render
     write_grey_png(tmp_path / "page.png", drawing(60))
     lines, plan = planned(prostm, "page.png", "--cell-mm", "10")
     [loss] = [w for w in plan["warnings"] if "loses" in w]
@@ -157,17 +157,17 @@ def test_a_plan_that_loses_to_a_control(prostm, tmp_path):
     assert lines.index(f"warning: {loss}") == 1 + lines.index(next(x for x in lines if "with skill" in x))
 
 
-def test_sizes_that_cannot_be(refuses, tmp_path):
+def test_impossible_sizes(refuses, tmp_path):
     np.save(tmp_path / "a.npy", np.ones((4, 5)))
     (tmp_path / "a.json").write_text(json.dumps(blob_field()))
     refuses("plan", "a.npy", "--cell-mm", "5", "--width-mm", "20", words=["--cell-mm and --width-mm exclude each other"])
     refuses("plan", "a.npy", "--width-mm", "0", words=["--width-mm 0 over 5 columns"])
-    refuses("plan", "a.npy", "--width-mm", "20", "--invert", words=["a.npy is no picture; leave out --invert"])
-    refuses("plan", "a.json", "--width-mm", "20", words=["says itself how large", "--width-mm"])
+    refuses("plan", "a.npy", "--width-mm", "20", "--invert", words=["a.npy is not a picture; leave out --invert"])
+    refuses("plan", "a.json", "--width-mm", "20", words=["contains the size of a cell", "--width-mm"])
     refuses("plan", "a.npy", words=["--cell-mm", "--width-mm"])
 
 
-def test_field_reads_the_picture_as_plan_did(prostm, tmp_path):
+def test_field_reads_an_image_like_plan(prostm, tmp_path):
     write_grey_png(tmp_path / "ink.png", drawing(20))
     picture = ["ink.png", "--width-mm", "80", "--invert"]
     prostm("plan", *picture, "--json", "plan.json")
@@ -175,7 +175,7 @@ def test_field_reads_the_picture_as_plan_did(prostm, tmp_path):
     assert json.loads(done.stdout)["envelope"]["metrics"]["correlation"] > 0.2
 
 
-def test_the_spectrum_of_what_is_felt(prostm, tmp_path):
+def test_the_spectrum_of_the_felt_field(prostm, tmp_path):
     (tmp_path / "blob.json").write_text(json.dumps(blob_field()))
     prostm("plan", "blob.json", "--preset", "fast", "--json", "blob.plan.json")
     done = prostm("field", "blob.plan.json", "--felt-spectrum", "--json", "-")
@@ -194,4 +194,4 @@ def test_the_spectrum_of_what_is_felt(prostm, tmp_path):
     assert [f"{loudest['frequency_hz']:.1f}", f"{loudest['share_at_strongest']:.4f}"] in [row[:2] for row in rows]
     assert json.loads(prostm("field", "blob.plan.json", "--json", "-").stdout)["felt"]["spectrum"] is None
     refused = prostm("field", "--widths", "--felt-spectrum", status=2)
-    assert refused.stderr == "prostm: --felt-spectrum needs a plan: the widths of a focus are not felt\n"
+    assert refused.stderr == "prostm: --felt-spectrum needs a plan; --widths has no percept\n"

@@ -1,4 +1,4 @@
-"""Conflicts between a command's files: no output is an input or another output, which is checked before any work."""
+"""Conflicts between the files of a command: no output may be an input or another output, as checked before any work."""
 
 import itertools
 import json
@@ -13,12 +13,12 @@ from test_bad_input import foci_file, hand_lines
 
 COMMANDS = ["run", "plan", "capture", "bench", "field", "solve", "devices", "check", "settings",
             "selftest", "soak"]
-# options that are texts and yet no files; one that is not among these must say that it is INPUT or OUTPUT
+# text options that are not files; any other text option must state whether it is INPUT or OUTPUT
 WORDS = {"NAME", "ADDRESS"}
 
 
 def options_of(program, command):
-    """Returns the options and positionals of a command, with the metavars in its help."""
+    """Returns the options and positional arguments of a command, with the metavars in its help."""
     text = subprocess.run([str(program), command, "--help"], capture_output=True, text=True, check=True).stdout
     found = re.findall(r"^  (--[a-z-]+|[a-z]+) ([A-Z|]+)\b", text, re.MULTILINE)
     assert found, text
@@ -26,7 +26,7 @@ def options_of(program, command):
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_every_text_option_says_whether_it_is_a_file(program, command):
+def test_every_text_option_states_whether_it_is_a_file(program, command):
     kinds = set(options_of(program, command).values())
     assert kinds <= WORDS | {"INPUT", "NAME|INPUT", "OUTPUT", "INT", "FLOAT", "UINT"}, kinds
 
@@ -46,7 +46,7 @@ def test_no_output_may_be_another_file_of_the_command(program, refuses, tmp_path
         if not both_outputs:
             path.write_text("{}")
         arguments = [command]
-        # required arguments other than the tested one
+        # required arguments other than the one under test
         for name in ("field", "plan", "foci", "files"):
             if name in options and name != other:
                 (tmp_path / "given.json").write_text("{}")
@@ -68,7 +68,7 @@ def field_npy(tmp_path, name="field.npy"):
     return tmp_path / name
 
 
-def test_links_and_other_names_are_the_same_file(refuses, tmp_path):
+def test_links_and_other_names_refer_to_the_same_file(refuses, tmp_path):
     field = field_npy(tmp_path)
     before = field.read_bytes()
     (tmp_path / "soft.json").symlink_to(field)
@@ -84,7 +84,7 @@ def test_links_and_other_names_are_the_same_file(refuses, tmp_path):
     assert not (tmp_path / "a.svg").exists()
 
 
-def test_a_file_that_the_settings_name_is_an_input_too(prostm, refuses, tmp_path):
+def test_a_file_named_in_the_settings_is_an_input_too(prostm, refuses, tmp_path):
     field, array, settings = field_npy(tmp_path), tmp_path / "array.json", tmp_path / "s.toml"
     array.write_text('{"format": "prostm-array/1", "name": "one", "frequency_hz": 40000, "radius_mm": 4.5,'
                      ' "directivity": "omni", "amplitude_pa_m": 3, "transducers_mm": [[0, 0, 0]]}')
@@ -94,7 +94,7 @@ def test_a_file_that_the_settings_name_is_an_input_too(prostm, refuses, tmp_path
     prostm(*common, "plan.json")
 
 
-def test_other_outputs_do_not_meet(prostm, tmp_path):
+def test_distinct_outputs_do_not_conflict(prostm, tmp_path):
     field = field_npy(tmp_path)
     for _ in range(2):  # both exist the second time
         prostm("plan", field, "--cell-mm", "5", "--json", "a.json", "--figure", "a.svg")
@@ -126,8 +126,8 @@ def test_protected_files_are_kept(refuses, tmp_path):
         assert kept.read_text() == "old"
 
 
-def test_outputs_are_tried_before_the_inputs_are_read(refuses, tmp_path):
-    """All inputs are nonsense: a command that reads one first never reaches the output."""
+def test_outputs_are_checked_before_the_inputs_are_read(refuses, tmp_path):
+    """All inputs are invalid: a command that reads one first never reaches the output."""
     for name in ("bad.json", "bad.h5", "bad.jsonl", "bad.toml"):
         (tmp_path / name).write_text("nonsense")
     for arguments in (["run", "--settings", "bad.toml"], ["run", "--hand", "bad.jsonl"], ["plan", "bad.json"],
@@ -139,7 +139,7 @@ def test_outputs_are_tried_before_the_inputs_are_read(refuses, tmp_path):
     refuses("plan", "bad.json", "--figure", "gone/f.svg", words=["gone/f.svg"])
 
 
-def test_a_pipe_that_nobody_writes_to_is_refused(refuses, tmp_path):
+def test_a_pipe_without_a_writer_is_rejected(refuses, tmp_path):
     for name in ("p.json", "p.npy", "p.h5", "p.jsonl"):
         os.mkfifo(tmp_path / name)
     field = field_npy(tmp_path)
@@ -150,7 +150,7 @@ def test_a_pipe_that_nobody_writes_to_is_refused(refuses, tmp_path):
         refuses(*arguments, words=["p.", "ordinary file"])
 
 
-def test_a_hand_that_is_renamed_in_every_frame_is_felt_as_one(prostm, refuses, tmp_path):
+def test_a_hand_renamed_in_every_frame_is_one_hand(prostm, refuses, tmp_path):
     header, frames = hand_lines()
 
     def run(*ids, step=0.01):
@@ -163,7 +163,7 @@ def test_a_hand_that_is_renamed_in_every_frame_is_felt_as_one(prostm, refuses, t
     refuses(*run(*range(9), step=0.1), words=["max_gap = 0.06 s"])
 
 
-def test_foci_refuse_what_they_do_not_know(refuses, tmp_path):
+def test_foci_reject_unknown_values(refuses, tmp_path):
     path = foci_file(tmp_path, [0, 0, 200])
     foci = json.loads(path.read_text())
     foci["foci"][0]["presure_pa"] = 3

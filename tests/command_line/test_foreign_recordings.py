@@ -1,4 +1,4 @@
-"""Recordings as h5py, MATLAB and Julia write them: texts of fixed length, compressions, and frames that were cut out."""
+"""Recordings as written by h5py, MATLAB and Julia: texts of fixed length, compression, and extracted frames."""
 
 import subprocess
 
@@ -17,11 +17,11 @@ def recording(program, tmp_path_factory):
 
 
 def copy(source, target, text=lambda value: value, **how):
-    """Writes a recording again. text: makes what an attribute holds of its text."""
+    """Copies a recording. text: maps the text of an attribute to its new value."""
     with h5py.File(source) as old, h5py.File(target, "w") as new:
         for name, value in old.attrs.items():
             made = text(value)
-            if isinstance(made, tuple):  # a type, and bytes
+            if isinstance(made, tuple):  # a type, and its bytes
                 made, data = made
                 space = h5py.h5s.create(h5py.h5s.SCALAR)
                 h5py.h5a.create(new.id, name.encode(), made, space).write(data, mtype=made)
@@ -38,7 +38,7 @@ def fixed(padding, charset):
     def text(value):
         data = value.encode()
         kind = h5py.h5t.C_S1.copy()
-        room = 3 if padding == h5py.h5t.STR_SPACEPAD else 0  # MATLAB leaves none for a NUL
+        room = 3 if padding == h5py.h5t.STR_SPACEPAD else 0  # MATLAB leaves no room for a NUL
         kind.set_size(len(data) + room)
         kind.set_strpad(padding)
         kind.set_cset(charset)
@@ -55,7 +55,7 @@ TEXTS = {"bytes": np.bytes_, "one in an array": lambda v: np.array([v], h5py.str
 
 
 def line_of(prostm, path, frame):
-    """Returns what plan says of a frame, without the file's name."""
+    """Returns plan's line about a frame, without the file's name."""
     said = prostm("plan", path, "--preset", "fast", "--frame", str(frame)).stdout.splitlines()[0]
     return said.split(f", frame {frame}: ")[1]
 
@@ -73,7 +73,7 @@ def test_compressions(prostm, recording, tmp_path, how):
     assert line_of(prostm, "a.h5", 30) == line_of(prostm, recording, 30)
 
 
-def test_a_compression_that_is_missing_is_named(refuses, recording, tmp_path):
+def test_a_missing_compression_filter_is_named(refuses, recording, tmp_path):
     copy(recording, tmp_path / "a.h5")
     with h5py.File(recording) as old, h5py.File(tmp_path / "a.h5", "a") as new:
         create = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
@@ -82,7 +82,7 @@ def test_a_compression_that_is_missing_is_named(refuses, recording, tmp_path):
         del new["frame/time"]
         data = old["frame/time"][()]
         dataset = h5py.h5d.create(new["frame"].id, b"time", h5py.h5t.NATIVE_DOUBLE, h5py.h5s.create_simple(data.shape), create)
-        for at in range(0, len(data), 8):  # as if it were compressed
+        for at in range(0, len(data), 8):  # pretends to be compressed
             dataset.write_direct_chunk((at,), data[at:at + 8].tobytes().ljust(64, b"\0"))
     refuses("plan", "a.h5", words=["/frame/time is compressed with Zstandard", "gzip"])
 
@@ -100,13 +100,13 @@ FRAMES = ["frame", "hand", "plan", "gate"]
 
 
 @pytest.mark.parametrize("rows, frame, original", [(slice(20, 40), 5, 25), (slice(0, None, 3), 10, 30), ([3, 30], 1, 30)])
-def test_frames_that_are_cut_out_keep_their_patches(prostm, recording, tmp_path, rows, frame, original):
+def test_extracted_frames_keep_their_patches(prostm, recording, tmp_path, rows, frame, original):
     copy(recording, tmp_path / "a.h5")
     cut(tmp_path / "a.h5", FRAMES, rows)
     assert line_of(prostm, "a.h5", frame) == line_of(prostm, recording, original)
 
 
-def test_frames_without_their_own_patches_are_refused(refuses, recording, tmp_path):
+def test_frames_without_their_own_patches_are_rejected(refuses, recording, tmp_path):
     def patches(file):
         return [name for name, item in file["target"].items() if item.shape[0] == file["target/frame"].shape[0]]
 
@@ -123,7 +123,7 @@ def test_frames_without_their_own_patches_are_refused(refuses, recording, tmp_pa
         copy(recording, tmp_path / "a.h5")
         cut(tmp_path / "a.h5", FRAMES, slice(0, 12))
         take(tmp_path / "a.h5", names, rows)
-        refuses("plan", "a.h5", "--frame", "11", words=["not that frame's", "docs/guides/recordings.md"])
+        refuses("plan", "a.h5", "--frame", "11", words=["its tables are inconsistent", "docs/guides/recordings.md"])
     copy(recording, tmp_path / "a.h5")
-    cut(tmp_path / "a.h5", ["frame"], slice(10, 30))  # and their plans stay
-    refuses("plan", "a.h5", words=["not that frame's"])
+    cut(tmp_path / "a.h5", ["frame"], slice(10, 30))  # but their plans are kept
+    refuses("plan", "a.h5", words=["its tables are inconsistent"])

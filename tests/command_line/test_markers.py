@@ -1,5 +1,5 @@
-"""Markers of prostm study run: over UDP and to a serial port, in the order of the stimuli and as the participant's file
-has them."""
+"""Markers of prostm study run, over UDP and to a serial port: they match the order of the stimuli and the participant's
+file."""
 
 import json
 import os
@@ -19,7 +19,7 @@ LONG = SHORT.replace("repeats = 1", "repeats = 2")
 
 
 class Receiver(threading.Thread):
-    """Keeps the datagrams that come to a port of 127.0.0.1."""
+    """Collects the datagrams that arrive at a port of 127.0.0.1."""
 
     def __init__(self):
         super().__init__(daemon=True)
@@ -47,9 +47,9 @@ class Receiver(threading.Thread):
 
 @pytest.fixture
 def rehearse(prostm, tmp_path):
-    """Returns a function that rehearses trials of short.toml, and returns the file's lines and what was printed; a run
-    in which the machine did not keep up is done again with the next participant, three times at most. `options` are
-    made for each run anew."""
+    """Returns a function that rehearses trials of short.toml and returns the lines of the file and the output. If the
+    machine does not keep up, the run is repeated with the next participant, at most three times. `options` is called
+    for each run."""
 
     def run(trials, options=lambda: []):
         for participant in range(1, 4):
@@ -96,7 +96,7 @@ def check_against_file(received, file):
 
 
 @pytest.mark.realtime
-def test_markers_over_udp_are_those_of_the_file(prostm, rehearse, tmp_path):
+def test_markers_over_udp_match_the_file(prostm, rehearse, tmp_path):
     (tmp_path / "short.toml").write_text(LONG.replace("seconds = 0", "seconds = 1"))
     receivers = []
 
@@ -113,14 +113,14 @@ def test_markers_over_udp_are_those_of_the_file(prostm, rehearse, tmp_path):
     assert [line["event"] for line in written] == ["training-on", "training-off"] + 2 * ["stimulus-on", "stimulus-off"]
     assert [line["code"] for line in written] == [4, 5, 1, 2, 1, 2]
     assert {line["run"] for line in written} == {1}
-    # a participant who is gone on with has another run
+    # a resumed participant has another run
     again = Receiver()
     prostm(*STUDY, file[0]["participant"], "--rehearse", "1", "--resume", "--markers", again.address)
     assert {line["run"] for line in again.stop()} <= {2}
 
 
 @pytest.mark.realtime
-def test_conditions_are_told_where_the_protocol_lets_them(rehearse, tmp_path):
+def test_conditions_are_sent_if_the_protocol_allows_it(rehearse, tmp_path):
     (tmp_path / "short.toml").write_text(LONG + "[markers]\nconditions = true\n")
     receivers = []
 
@@ -133,7 +133,7 @@ def test_conditions_are_told_where_the_protocol_lets_them(rehearse, tmp_path):
     trials = {line["trial"]: line for line in file if line["kind"] == "trial"}
     for line in written:
         assert (line["method"], line["scene"]) == ("am", trials[line["trial"]]["scene"])
-        # a presentation's newest plan, and means over the trial: modulation has one period throughout
+        # a presentation's newest plan, and means over the trial: the modulation has one period throughout
         assert line["played"] == trials[line["trial"]]["played"]
         assert line["played"]["period_ms"] == pytest.approx(5.0, abs=0.1)
         place = ["one-plume", "four-plumes"].index(line["scene"])
@@ -147,7 +147,7 @@ def test_a_serial_port_gets_a_code_for_each_marker(rehearse, tmp_path):
     tty.setraw(theirs)
     file, _ = rehearse(2, lambda: ["--markers", f"serial://{os.ttyname(theirs)}:9600"])
     assert select.select([ours], [], [], 5)[0]
-    codes = list(os.read(ours, 100))[-4:]  # of the run that counts
+    codes = list(os.read(ours, 100))[-4:]  # of the run under test
     assert codes == [line["code"] for line in file if line["kind"] == "marker"] == [1, 2, 1, 2]
     assert termios.tcgetattr(theirs)[5] == termios.B9600
     os.close(ours)
@@ -163,7 +163,7 @@ def test_without_targets_the_file_has_the_markers(rehearse, tmp_path):
 
 
 @pytest.mark.realtime
-def test_a_study_goes_on_where_nobody_receives(rehearse, tmp_path):
+def test_a_study_continues_without_a_receiver(rehearse, tmp_path):
     (tmp_path / "short.toml").write_text(LONG)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as gone:
         gone.bind(("127.0.0.1", 0))
@@ -175,7 +175,7 @@ def test_a_study_goes_on_where_nobody_receives(rehearse, tmp_path):
         return ["--markers", address, "--markers", receivers[-1].address]
 
     file, said = rehearse(2, options)
-    assert said.count(f"Markers do not reach {address}: nobody receives there. The study goes on") == 1
+    assert said.count(f"Markers do not reach {address}: nothing is listening there. The study continues") == 1
     assert "2 of 4 answers" in said
     written = [line for line in file if line["kind"] == "marker"]
     assert len(receivers[-1].stop()) == len(written) == 4
@@ -187,10 +187,10 @@ def test_a_study_goes_on_where_nobody_receives(rehearse, tmp_path):
     ("udp://127.0.0.1:70000", ["port that is not a number from 1 to 65535"]),
     ("udp://no-such-host.invalid:9000", ["--markers udp://no-such-host.invalid:9000 cannot be opened"]),
     ("serial:///dev/none", ["--markers serial:///dev/none cannot be opened", "No such file"]),
-    ("serial:///dev/null", ["it is no serial port"]),
-    ("serial:///dev/ttyUSB0:fast", ["rate that is no number"]),
+    ("serial:///dev/null", ["it is not a serial port"]),
+    ("serial:///dev/ttyUSB0:fast", ["rate that is not a number"]),
 ])
-def test_a_target_that_cannot_be_opened_is_refused(refuses, tmp_path, address, words):
+def test_a_target_that_cannot_be_opened_is_rejected(refuses, tmp_path, address, words):
     (tmp_path / "short.toml").write_text(SHORT)
     refuses(*STUDY, "1", "--markers", address, words=words)
     refuses(*STUDY, "1", *["--markers", "udp://127.0.0.1:9"] * 9, words=["--markers is given 9 times", "8"])

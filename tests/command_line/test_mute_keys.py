@@ -1,4 +1,4 @@
-"""Keys of the terminal during a run: they mute, and the terminal is as before afterwards, however the run ends."""
+"""Terminal keys during a run: they mute, and the terminal is restored afterwards, however the run ends."""
 
 import os
 import pty
@@ -11,7 +11,7 @@ import pytest
 
 
 class Terminal:
-    """A run of the program in the foreground of a terminal of its own."""
+    """A run in the foreground of its own terminal."""
 
     def __init__(self, program, folder, *arguments):
         self.master, self.slave = pty.openpty()
@@ -62,7 +62,7 @@ def terminal(program, tmp_path):
     opened.close()
 
 
-# a terminal sends characters: those of M's place on Cyrillic, Greek, Hebrew, Arabic and Thai keyboards mute, too
+# a terminal sends characters: those at M's place on Cyrillic, Greek, Hebrew, Arabic and Thai keyboards also mute
 @pytest.mark.parametrize("key", ["m", "M", " ", "ь", "Ь", "μ", "צ", "ة", "ท", "ｍ"])
 def test_a_key_mutes_and_unmutes(terminal, key):
     terminal.wait_for("Keys: m or space mutes the array")
@@ -78,7 +78,7 @@ def test_a_key_mutes_and_unmutes(terminal, key):
 
 
 def test_keys_without_a_character_do_not_mute(terminal):
-    """The sequences of Enter of the keypad, of a mouse and of Alt-M have an M in them."""
+    """The sequences of Enter on the keypad, of a mouse and of Alt-M contain an M."""
     terminal.wait_for("Keys: ")
     terminal.press("\x1bOM\x1b[M\x1b[1;2M\x1bm")
     terminal.press("ф\xff\x1b[C")
@@ -95,14 +95,14 @@ def test_ctrl_c_is_still_a_signal(terminal):
     assert terminal.is_as_before()
 
 
-# a sanitizer's own handler of SIGSEGV stays, and leaves the terminal as it is
+# a sanitizer's own SIGSEGV handler stays in place, and does not restore the terminal
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", pytest.param("SIGSEGV", marks=pytest.mark.realtime), "SIGABRT"])
 def test_the_terminal_is_restored_after_a_signal(terminal, name):
     terminal.wait_for("Keys: ")
     assert not terminal.is_as_before()
     terminal.run.send_signal(getattr(signal, name))
     status = terminal.run.wait(timeout=30)
-    # a fault ends the program as it would have without keys; a sanitizer may answer it in its own way
+    # a fault ends the program as it would without key handling; a sanitizer may respond in its own way
     assert status in ({"SIGTERM": [143], "SIGHUP": [129]}.get(name) or [-getattr(signal, name), 1])
     assert terminal.is_as_before()
 

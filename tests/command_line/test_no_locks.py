@@ -1,5 +1,5 @@
-"""A file system without locks, as NFS without a lock daemon: every command works with one warning, and a participant's file
-is for one run at a time, on one machine and between machines."""
+"""A file system without locks, such as NFS without a lock daemon: every command works with one warning, and a
+participant's file is still limited to one run at a time, on one machine and between machines."""
 
 import json
 import os
@@ -17,7 +17,7 @@ SOURCE = "#include <errno.h>\nint flock(int fd, int how) { (void)fd; (void)how; 
 
 @pytest.fixture(params=["ENOLCK", "EOPNOTSUPP"])
 def without_locks(request, tmp_path, monkeypatch):
-    """Lets flock() fail in every program that the test starts."""
+    """Makes flock() fail in every program that the test starts."""
     library = tmp_path / "no-locks.so"
     subprocess.run(["cc", "-shared", "-fPIC", "-o", library, "-xc", "-"], input=SOURCE % request.param, text=True, check=True)
     monkeypatch.setenv("LD_PRELOAD", str(library))
@@ -41,7 +41,7 @@ def test_recordings_are_written_and_read_with_a_warning(prostm, tmp_path, withou
     assert prostm("plan", "a.npy", "--cell-mm", "5", "--figure", "a.svg").stderr == ""
 
 
-def test_a_participants_file_is_for_one_run_at_a_time(program, prostm, refuses, tmp_path, without_locks):
+def test_a_participants_file_is_limited_to_one_run_at_a_time(program, prostm, refuses, tmp_path, without_locks):
     (tmp_path / "short.toml").write_text(SHORT)
     file = tmp_path / "answers" / "participant-7.jsonl"
     lock = tmp_path / "answers" / "participant-7.jsonl.lock"
@@ -59,7 +59,7 @@ def test_a_participants_file_is_for_one_run_at_a_time(program, prostm, refuses, 
     process.send_signal(signal.SIGKILL)
     process.communicate()
 
-    before = lines()  # a crash on this machine is recognised
+    before = lines()  # a crash on this machine is detected
     process = start("--resume")
     wait_for(lambda: lines() > before)
     process.send_signal(signal.SIGINT)
@@ -67,7 +67,7 @@ def test_a_participants_file_is_for_one_run_at_a_time(program, prostm, refuses, 
     assert "was left by process" in said and "has no locks" in said
     assert not lock.exists()
 
-    before = lines()  # one on another machine is not
+    before = lines()  # a crash on another machine is not
     owner = {"host": "lab-2", "machine": "0", "boot": "1", "pids": "2", "pid": 3, "started": "4"}
     lock.write_text(json.dumps(owner) + "\n")
     refuses(*STUDY, "7", "--resume", words=["process 3 on lab-2", "give --take-over", str(lock.name)])

@@ -1,4 +1,4 @@
-"""Speeds and periods as played in every output; settings and levels above limits are refused where they are written."""
+"""Speeds and periods as played, in every output; settings and levels above the limits are rejected with their place."""
 
 import json
 from pathlib import Path
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-RATE = 40e3  # samples of the emission [Hz]
+RATE = 40e3  # emission rate [Hz]
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def settings(tmp_path, text):
 
 
 @pytest.mark.parametrize("preset", ["paper", "paper-valid", "best", "fast"])
-def test_plan_and_field_state_what_is_played(prostm, field, tmp_path, preset):
+def test_plan_and_field_report_what_is_played(prostm, field, tmp_path, preset):
     toml = settings(tmp_path, f'[plan]\npreset = "{preset}"\nspeed = 8\npaths = 2\n')
     plan = json.loads(prostm("plan", field, "--settings", toml, "--json", "-").stdout)
     (tmp_path / "p.json").write_text(json.dumps(plan))
@@ -46,7 +46,7 @@ def test_plan_and_field_state_what_is_played(prostm, field, tmp_path, preset):
         assert emitted["speed_m_s"] == pytest.approx(own["speed_m_s"], rel=1e-6) and emitted["speed_m_s"] <= 8
 
 
-def test_a_plan_above_the_limit_is_played_at_it_with_a_warning(prostm, field, tmp_path):
+def test_a_plan_above_the_limit_is_played_at_the_limit_with_a_warning(prostm, field, tmp_path):
     plan = json.loads(prostm("plan", field, "--preset", "fast", "--paths", "1", "--json", "-").stdout)
     plan["paths"][0]["period_ms"] *= plan["paths"][0]["speed_m_s"] / 10
     plan["paths"][0]["speed_m_s"] = 10
@@ -61,19 +61,19 @@ def test_a_plan_above_the_limit_is_played_at_it_with_a_warning(prostm, field, tm
     assert played["loop"]["stretch"][0] > 0.2, "against the plan, not against the limit"
 
 
-def test_speeds_above_the_limit_are_refused_where_they_are_written(refuses, field, tmp_path):
+def test_speeds_above_the_limit_are_rejected_with_their_place(refuses, field, tmp_path):
     toml = settings(tmp_path, "[plan]\n\nspeed = 8.5\n")
     words = ["s.toml, line 3", "speed = 8.5 m/s", "8 m/s"]
     refuses("plan", field, "--settings", toml, words=words)
     refuses("run", "--settings", toml, "--as-fast-as-possible", "--seconds", "1", words=words)
 
 
-def test_times_of_fades_under_forty_samples_are_refused(refuses, field, tmp_path):
+def test_fade_times_below_forty_samples_are_rejected(refuses, field, tmp_path):
     toml = settings(tmp_path, "[emit]\nfade_time = 0.0001\n")
     refuses("plan", field, "--settings", toml, words=["emit.fade_time", "0.001 s", "40 samples"])
 
 
-def test_field_feels_what_plan_feels(prostm, field, tmp_path):
+def test_field_and_plan_report_the_same_felt_field(prostm, field, tmp_path):
     prostm("plan", field, "--preset", "fast", "--array", "usx", "--json", "p.json")
     prostm("field", "p.json", "--field", field, "--array", "usx", "--json", "f.json")
     plan = json.loads((tmp_path / "p.json").read_text())
@@ -85,7 +85,7 @@ PROTOCOLS = sorted((ROOT / "data" / "protocols").glob("*.toml"))
 
 
 @pytest.mark.parametrize("protocol", PROTOCOLS, ids=lambda path: path.stem)
-def test_study_check_prints_what_is_presented(prostm, protocol):
+def test_study_check_prints_the_presented_values(prostm, protocol):
     told = prostm("study", "check", protocol).stdout
     assert told.rstrip().endswith("every level is played as it is written.")
     presented = json.loads(prostm("study", "check", protocol, "--json", "-").stdout)
@@ -109,11 +109,11 @@ full_scale_pressure = 0.31
 @pytest.mark.parametrize("setting, low, high, words", [
     ("plan.speed", 2, 14, ["line 6", "level.high = 14", "8 m/s"]),
     ("plan.draw_rate", 20, 1000, ["line 6", "level.high = 1000", "0.01"]),
-    ("plan.gain", 1, 5, ["line 6", "level.high = 5", "clips"]),
+    ("plan.gain", 1, 5, ["line 6", "level.high = 5", "clipped"]),
     ("plan.gain", 0.02, 2, ["line 5", "level.low = 0.02", "silent"]),
-    ("plan.paths", 1.5, 3, ["line 5", "level.low = 1.5", "whole numbers"]),
+    ("plan.paths", 1.5, 3, ["line 5", "level.low = 1.5", "a whole number"]),
 ])
-def test_levels_that_are_clamped_are_refused(refuses, tmp_path, setting, low, high, words):
+def test_levels_that_would_be_clamped_are_rejected(refuses, tmp_path, setting, low, high, words):
     (tmp_path / "p.toml").write_text(LEVELS.format(setting=setting, low=low, high=high))
     refuses("study", "check", "p.toml", words=["p.toml", *words])
     refuses("study", "run", "p.toml", "--participant", "1", words=words)

@@ -1,4 +1,4 @@
-"""Progress of long work on a terminal, and its end by Ctrl-C."""
+"""Progress of long work on a terminal, and its interruption by Ctrl-C."""
 
 import os
 import pty
@@ -13,7 +13,7 @@ import pytest
 
 
 def ring(path, side, edge_mm):
-    """Writes a ring of pressure of 22 mm radius."""
+    """Writes a ring of pressure with a radius of 22 mm."""
     x = (np.arange(side) - side / 2 + 0.5) * edge_mm
     np.save(path, np.exp(-((np.hypot(*np.meshgrid(x, x)) - 22) / 5) ** 2))
 
@@ -29,7 +29,7 @@ class OnTerminal:
         self.shown = ""
 
     def read(self):
-        """Adds what comes next to `shown`; false at the end."""
+        """Appends the next output to `shown`; false at the end."""
         try:
             data = os.read(self.master, 1 << 16)
         except OSError:
@@ -38,7 +38,7 @@ class OnTerminal:
         return bool(data)
 
     def crawl_until(self, pattern):
-        """Stops the process for two seconds at a time, so that its stages take long on any machine."""
+        """Suspends the process for two seconds at a time, so that its stages take long on any machine."""
         while not re.search(pattern, self.shown):
             assert self.process.poll() is None, f"ended without {pattern}: {self.shown}"
             self.process.send_signal(signal.SIGSTOP)
@@ -60,11 +60,11 @@ class OnTerminal:
 
 
 @pytest.mark.long
-def test_stages_show_their_counts_or_their_time(program, tmp_path):
+def test_stages_show_their_count_or_their_time(program, tmp_path):
     ring(tmp_path / "ring.npy", 400, 0.35)
     planning = OnTerminal(program, tmp_path, "plan", "ring.npy", "--cell-mm", "0.35", "--json", "plan.json")
     assert planning.end() == 0
-    assert re.search(r"\rscoring what must lose to the plan  \d+ of \d+ fields ", planning.shown)
+    assert re.search(r"\rscoring the controls  \d+ of \d+ fields ", planning.shown)
     assert planning.shown.endswith("\r\033[K")
     field = OnTerminal(program, tmp_path, "field", "plan.json", "--field", "ring.npy", "--cell-mm", "0.35", "--json",
                        "field.json")
@@ -88,7 +88,7 @@ def test_ctrl_c_ends_long_work_without_files(program, tmp_path):
 
 
 @pytest.mark.parametrize("term", ["dumb", ""])
-def test_a_terminal_that_cannot_erase_gets_no_progress(program, tmp_path, term):
+def test_a_terminal_without_erase_gets_no_progress(program, tmp_path, term):
     ring(tmp_path / "ring.npy", 200, 0.7)
     planning = OnTerminal(program, tmp_path, "plan", "ring.npy", "--cell-mm", "0.7", term=term)
     assert planning.end() == 0

@@ -1,4 +1,4 @@
-"""prostm report: every number of its page is in a file, parts go on where they were cut, nothing is loaded."""
+"""prostm report: every number on its page is from a file, interrupted parts resume, nothing external is loaded."""
 
 import html.parser
 import json
@@ -18,7 +18,7 @@ PARTS = ["about", "scenes", "table-1", "figure-1", "figure-2", "figure-3", "figu
 
 
 class Page(html.parser.HTMLParser):
-    """The elements with data-from, the text outside them, and what would be loaded."""
+    """The elements with data-from, the text outside them, and anything that would be loaded."""
 
     def __init__(self, text):
         super().__init__()
@@ -67,14 +67,14 @@ def without_times(document):
 
 
 def picture_of(report, name):
-    """A picture without the numbers of its identifiers, which count all pictures of a run."""
+    """A picture without the numbers in its identifiers, which count the pictures of a run."""
     text = (report / "parts" / f"{name}.svg").read_text()
     return re.sub(r'((?: id="|"#|url\(#)[a-z]+)[-\d]+', r"\1", text)
 
 
 @pytest.fixture(scope="module")
 def paper(tmp_path_factory):
-    """A folder with scores as the paper's, and no other figure."""
+    """A folder with scores like the paper's, and no other figure."""
     folder = tmp_path_factory.mktemp("paper")
     (folder / "fig4.json").write_text(json.dumps(PAPER))
     return folder
@@ -82,7 +82,7 @@ def paper(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def report(program, paper, tmp_path_factory):
-    """The only whole quick report of these tests, with a browser that is not there."""
+    """The only complete quick report of these tests, with a missing browser."""
     out = tmp_path_factory.mktemp("made") / "report"
     arguments = [program, "report", "--quick", "--paper-data", paper, "--out", out]
     result = subprocess.run(arguments, capture_output=True, text=True, timeout=600, env={"PATH": "/nowhere"})
@@ -112,13 +112,13 @@ def test_every_number_of_the_page_is_in_a_file(report, documents):
         elif isinstance(value, str) and "{/" not in value:
             assert text == value, attributes
     assert numbers > 500
-    # what is no value of a file is the title and the links to the parts, which are in the files too
+    # the title and the links to the parts are not values of a file, but are in the files too
     titles = [document["title"] for document in documents.values()]
     assert [text.strip() for text in page.stray if text.strip()] == ["prostm report, quick"] * 2 + titles
 
 
 @pytest.mark.long
-def test_no_number_stands_in_the_page_by_itself(documents):
+def test_the_page_has_no_number_of_its_own(documents):
     for name, document in documents.items():
         for block in document["blocks"] + document["timing"]:
             for row in block.get("table", {"rows": []})["rows"]:
@@ -146,22 +146,22 @@ def test_all_parts_are_in_one_file(report, documents):
 
 
 @pytest.mark.long
-def test_models_are_never_people(documents):
+def test_models_are_never_called_people(documents):
     text = documents["models"]["blocks"][0]["text"]
-    assert text.startswith("These are models, never people.")
+    assert text.startswith("These are models, not people.")
     rows = [block["table"]["rows"] for block in documents["models"]["blocks"] if "table" in block][0]
     assert {row["observer"] for row in rows} == {"model: skin", "model: field", "model: strength", "model: guess", "people"}
 
 
 @pytest.mark.long
-def test_the_page_says_what_is_missing(documents):
+def test_the_page_reports_missing_parts(documents):
     assert any("fig2.json" in block.get("text", "") for block in documents["about"]["blocks"])
     assert any("missing" in block.get("text", "") for block in documents["figure-2"]["blocks"])
     assert any("figure" in block for block in documents["figure-4"]["blocks"])
 
 
 @pytest.mark.long
-def test_the_parts_that_are_there_are_kept_and_the_others_come_out_alike(program, paper, report, documents, tmp_path):
+def test_existing_parts_are_kept_and_the_others_are_reproduced(program, paper, report, documents, tmp_path):
     out = tmp_path / "again"
     shutil.copytree(report, out)
     again = [name for name in PARTS if name not in ("skin", "latency", "machine")]
@@ -171,7 +171,7 @@ def test_the_parts_that_are_there_are_kept_and_the_others_come_out_alike(program
     arguments = [program, "report", "--quick", "--paper-data", paper, "--out", out]
     result = subprocess.run(arguments, capture_output=True, text=True, timeout=300, env={"PATH": "/nowhere"})
     assert result.returncode == 0, result.stderr
-    assert f"{len(PARTS) - len(again)} parts were there already" in result.stdout
+    assert f"{len(PARTS) - len(again)} parts were kept from an earlier run" in result.stdout
     assert (out / "parts" / "skin.json").stat().st_mtime_ns == before
     for name in again:
         made = json.loads((out / "parts" / f"{name}.json").read_text())
@@ -182,7 +182,7 @@ def test_the_parts_that_are_there_are_kept_and_the_others_come_out_alike(program
 
 @pytest.mark.long
 @pytest.mark.parametrize("how, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)])
-def test_a_report_that_is_cut_short_goes_on(program, paper, report, tmp_path, how, status):
+def test_an_interrupted_report_resumes(program, paper, report, tmp_path, how, status):
     out = tmp_path / "cut"
     shutil.copytree(report, out)
     for name in ("table-1", "skin"):
@@ -195,22 +195,22 @@ def test_a_report_that_is_cut_short_goes_on(program, paper, report, tmp_path, ho
         rest = run.communicate(timeout=60)[0]
     assert run.returncode == status
     if how != signal.SIGKILL:
-        assert "the same command goes on from there" in rest
+        assert "run the same command again to resume" in rest
     for file in (out / "parts").glob("*.json"):
         json.loads(file.read_text())
     assert (out / "parts" / "table-1.json").is_file()
     assert not (out / "parts" / "skin.json").is_file()
 
 
-def test_only_a_report_is_written_over(refuses, tmp_path):
+def test_only_a_report_is_overwritten(refuses, tmp_path):
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "index.html").write_text("mine")
-    refuses("report", "--quick", "--out", "mine", words=["--out mine has files and is no report"])
+    refuses("report", "--quick", "--out", "mine", words=["--out mine has other files than a report's"])
     refuses("report", "--quick", "--out", "mine/index.html", words=["is a file; name a folder"])
     assert (tmp_path / "mine" / "index.html").read_text() == "mine"
 
 
-def test_scores_that_are_broken_are_a_sentence(refuses, tmp_path):
+def test_broken_scores_are_reported_in_a_sentence(refuses, tmp_path):
     (tmp_path / "scores").mkdir()
     (tmp_path / "scores" / "fig4.json").write_text('{"fig4": {')
     refuses("report", "--quick", "--out", "r", "--paper-data", "scores", words=["fig4.json"])
@@ -218,7 +218,7 @@ def test_scores_that_are_broken_are_a_sentence(refuses, tmp_path):
 
 @pytest.mark.long
 def test_a_browser_prints_the_page(program, paper, report, tmp_path):
-    """A stand-in for Chromium, whose arguments say what it would print."""
+    """A stand-in for Chromium that writes its arguments in place of the print."""
     out, tools = tmp_path / "printed", tmp_path / "tools"
     shutil.copytree(report, out)
     tools.mkdir()

@@ -1,4 +1,4 @@
-"""The words of a run: its verdict first, where its files are, what becomes of its tracker; and what prostm check finds."""
+"""Messages of a run: the verdict first, the location of its files, the state of its tracker; and of prostm check."""
 
 import base64
 import hashlib
@@ -24,14 +24,14 @@ def start(program, folder, *arguments, **options):
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
 
-def test_the_verdict_stands_before_the_numbers(prostm, tmp_path):
+def test_the_verdict_precedes_the_numbers(prostm, tmp_path):
     done = prostm(*SMALL, "--stepped", "--seconds", "4", "--json", "run.json")
     lines = done.stdout.splitlines()
     verdict = json.loads((tmp_path / "run.json").read_text())["verdict"]
     assert verdict["held"] is None and 1 <= len(verdict["sentences"]) <= 4
     assert lines[:len(verdict["sentences"]) + 1] == [*verdict["sentences"], ""]
     assert re.match(r"4\.0 s of the scene were computed in \d+\.\d s, (as fast as|\d+\.\d times (faster|slower) than) real time; ", lines[0])
-    for heading in ["The run: one-plume, 4.0 s", "Latency, from ", "Work, how long "]:
+    for heading in ["The run: one-plume, 4.0 s", "Latency, from ", "Computing time "]:
         assert any(line.startswith(heading) for line in lines)
 
 
@@ -43,7 +43,7 @@ def test_no_number_is_minus_zero(prostm):
     assert not re.search(r"-0\.0*\s", prostm("plan", ROOT / "data/palm.npy", "--cell-mm", "5").stdout)
 
 
-def test_in_real_time_the_verdict_is_of_the_rates(prostm, tmp_path):
+def test_in_real_time_the_verdict_is_about_the_rates(prostm, tmp_path):
     prostm(*SMALL, "--seconds", "2", "--json", "run.json")
     summary = json.loads((tmp_path / "run.json").read_text())
     share = summary["world_steps"] / (summary["world_steps"] + summary["skipped_world_steps"])
@@ -54,7 +54,7 @@ def test_in_real_time_the_verdict_is_of_the_rates(prostm, tmp_path):
     assert "of 50 Hz, plans" in summary["verdict"]["sentences"][0]
 
 
-def test_every_file_is_said_once_and_standard_output_is_none(prostm, tmp_path):
+def test_every_file_is_named_once_and_standard_output_is_not(prostm, tmp_path):
     done = prostm(*SMALL, "--stepped", "--seconds", "6", "--record", "r.h5", "--figure", "r.png", "--json", "r.json")
     assert re.findall(r"^wrote (.*)$", done.stdout, re.M) == ["r.h5", "r.json", "r.png"]
     done = prostm(*SMALL, "--stepped", "--seconds", "1", "--record", "s.h5", "--json", "-")
@@ -65,7 +65,7 @@ def test_every_file_is_said_once_and_standard_output_is_none(prostm, tmp_path):
     assert all((tmp_path / name).exists() for name in ["r.h5", "r.json", "r.png", "s.h5", "c.h5", "c.json"])
 
 
-def test_a_run_that_is_cut_short_says_where_its_files_are(program, tmp_path):
+def test_an_interrupted_run_names_its_files(program, tmp_path):
     running = start(program, tmp_path, *SMALL, "--seconds", "600", "--record", "r.h5", "--json", "r.json")
     wait_for((tmp_path / "r.h5.part.h5").exists)
     time.sleep(1.0)
@@ -75,7 +75,7 @@ def test_a_run_that_is_cut_short_says_where_its_files_are(program, tmp_path):
     assert out.splitlines()[-2:] == ["wrote r.h5", "wrote r.json"] and "cut short" in out
 
 
-def test_a_run_that_stayed_says_at_its_end_where_its_files_are(program, tmp_path):
+def test_a_run_that_stayed_open_names_its_files_at_the_end(program, tmp_path):
     running = start(program, tmp_path, *SMALL, "--seconds", "1", "--view", "--view-port", "0", "--stay", "--json", "r.json")
     wait_for((tmp_path / "r.json").exists)
     time.sleep(0.5)
@@ -86,7 +86,7 @@ def test_a_run_that_stayed_says_at_its_end_where_its_files_are(program, tmp_path
 
 
 def on_a_terminal(program, folder, *arguments, kind="xterm"):
-    """Returns what a terminal shows of a command, escape sequences included."""
+    """Returns what a terminal receives from a command, including escape sequences."""
     ours, theirs = pty.openpty()
     process = subprocess.Popen([str(program), *arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs,
                                env={**os.environ, "TERM": kind})
@@ -106,7 +106,7 @@ def on_a_terminal(program, folder, *arguments, kind="xterm"):
     ([*SMALL, "--as-fast-as-possible", "--seconds", "3"], "3.0 s of the scene"),
     (["capture", "--grid", "32", "--frames", "20", "--out", "c.h5"], "20 fields"),
 ])
-def test_the_progress_line_is_gone_before_anything_else_is_printed(program, tmp_path, arguments, first_word):
+def test_the_progress_line_is_erased_before_other_output(program, tmp_path, arguments, first_word):
     shown = on_a_terminal(program, tmp_path, *arguments)
     line = next(line for line in shown.split("\n") if first_word in line)
     assert "\r\x1b[K" in line, "no progress was shown"
@@ -114,12 +114,12 @@ def test_the_progress_line_is_gone_before_anything_else_is_printed(program, tmp_
 
 
 @pytest.mark.parametrize("kind", ["dumb", ""])
-def test_a_terminal_that_cannot_erase_gets_no_escape_sequences(program, tmp_path, kind):
+def test_a_terminal_without_erase_gets_no_escape_sequences(program, tmp_path, kind):
     shown = on_a_terminal(program, tmp_path, *SMALL, "--as-fast-as-possible", "--seconds", "3", kind=kind)
     assert "3.0 s of the scene" in shown and "\x1b" not in shown and "running" not in shown
 
 
-def test_the_summary_begins_with_a_held_hand_without_its_stimulus(prostm, tmp_path):
+def test_the_summary_starts_with_a_held_hand_without_its_stimulus(prostm, tmp_path):
     def first(grid):
         out = prostm("run", "--scene", "four-plumes", "--hand", "study", "--grid", str(grid), "--seconds", "8",
                      "--as-fast-as-possible", "--json", "r.json").stdout
@@ -129,14 +129,14 @@ def test_the_summary_begins_with_a_held_hand_without_its_stimulus(prostm, tmp_pa
     assert line.startswith("The held hand did not get the stimulus of four-plumes: 0 % of its updates passed the gate")
     assert "--grid 32 is too coarse for this scene: use --grid 56." in line
     assert summary["verdict"]["sentences"][0] == line and summary["held_updates"] > 60
-    # what it says helps
+    # its advice helps
     line, summary = first(56)
     assert line.startswith("8.0 s of the scene")
     assert summary["held_passed_updates"] >= 0.8 * summary["held_updates"]
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="no affinity of processes on this system")
-def test_check_counts_the_cores_that_it_may_use(program, tmp_path):
+def test_check_counts_the_cores_available_to_it(program, tmp_path):
     one = min(os.sched_getaffinity(0))
     running = subprocess.Popen([str(program), "check"], cwd=tmp_path, stdout=subprocess.PIPE, text=True,
                                preexec_fn=lambda: os.sched_setaffinity(0, {one}))
@@ -151,7 +151,7 @@ def free_port():
         return one.getsockname()[1]
 
 
-def test_a_tracker_that_never_comes_is_told_at_once_and_in_the_exit_status(program, tmp_path):
+def test_a_missing_tracker_is_reported_at_once_and_in_the_exit_status(program, tmp_path):
     port = free_port()
     running = start(program, tmp_path, *SMALL, "--hand", f"leap://127.0.0.1:{port}", "--seconds", "4", "--json", "r.json",
                     "--record", "r.h5", "--figure", "r.png")
@@ -163,13 +163,13 @@ def test_a_tracker_that_never_comes_is_told_at_once_and_in_the_exit_status(progr
         assert words in line
     out, errors = running.communicate(timeout=60)
     assert running.returncode == 3 and errors == ""
-    assert out.count("No tracker yet") == 0 and "No frame of a hand ever came: " in out
+    assert out.count("No tracker yet") == 0 and "No hand frame ever arrived: " in out
     summary = json.loads((tmp_path / "r.json").read_text())
     assert summary["tracker"]["frames"] == 0 and summary["seconds"] == pytest.approx(4.0, abs=0.1)
     assert (tmp_path / "r.h5").exists() and "no picture was drawn in r.png" in out
 
 
-def test_an_openxr_runtime_that_is_missing_is_told_alike(prostm, monkeypatch, tmp_path):
+def test_a_missing_openxr_runtime_is_reported_likewise(prostm, monkeypatch, tmp_path):
     monkeypatch.setenv("XR_RUNTIME_JSON", str(tmp_path / "none.json"))
     out = prostm(*SMALL, "--hand", "openxr", "--seconds", "2", status=3).stdout
     assert out.startswith("No tracker yet: there is no OpenXR runtime here; install one")
@@ -177,7 +177,7 @@ def test_an_openxr_runtime_that_is_missing_is_told_alike(prostm, monkeypatch, tm
 
 
 class LeapStandIn:
-    """A service that accepts one connection after another and sends frames without hands, until it is closed."""
+    """A service that accepts one connection after another and sends frames without hands until it is closed."""
 
     def __init__(self, port):
         self.listener = socket.create_server(("127.0.0.1", port))
@@ -221,7 +221,7 @@ class LeapStandIn:
         self.thread.join()
 
 
-def test_a_tracker_that_comes_and_goes_is_told_once_each(program, tmp_path):
+def test_a_tracker_that_comes_and_goes_is_reported_once_each(program, tmp_path):
     port = free_port()
     running = start(program, tmp_path, *SMALL, "--hand", f"leap://127.0.0.1:{port}", "--seconds", "600", "--json", "r.json")
     try:
@@ -242,7 +242,7 @@ def test_a_tracker_that_comes_and_goes_is_told_once_each(program, tmp_path):
 
 
 @pytest.mark.realtime
-def test_check_says_within_20_s_what_this_machine_holds(program, tmp_path):
+def test_check_reports_within_20_s_what_this_machine_can_run(program, tmp_path):
     begun = time.monotonic()
     running = start(program, tmp_path, "check", "--json", "check.json")
     out, errors = running.communicate(timeout=60)

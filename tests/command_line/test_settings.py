@@ -1,4 +1,4 @@
-"""prostm settings lists what a settings file may have, and writes one that can be read."""
+"""prostm settings lists the entries of a settings file, and writes a file that can be read."""
 
 import json
 import re
@@ -38,14 +38,14 @@ def test_the_table(prostm):
     assert all(len(line) <= 120 and line == line.rstrip() for line in text.splitlines())
     assert [f"[{g}]" for g in dict.fromkeys(r["group"] for r in rows)] == re.findall(r"^\[\w+\]$", text, re.M)
     assert [row["name"] for row in rows] == re.findall(r"^  (\w+) +(?!range)[^ ]", text, re.M)[1:]
-    # every row has its meaning, whole
+    # every row has its complete description
     flat = " ".join(text.split())
     assert all(row["help"].split()[0] in flat for row in rows)
     assert "paths 4 1 to 8 largest number of paths" in flat
     assert "speed 7 0.1 to 8 m/s speed of the focal points (v)" in flat
 
 
-def test_a_group_and_a_key_alone(prostm, refuses):
+def test_a_single_group_and_key(prostm, refuses):
     assert {row["group"] for row in listed(prostm, "plan")} == {"plan"}
     assert [row["name"] for row in listed(prostm, "plan.paths")] == ["paths"]
     assert [row["group"] for row in listed(prostm, "sigma")] == ["plan", "am"]
@@ -70,7 +70,7 @@ def test_the_values_in_force(prostm, refuses, tmp_path):
     assert "wrote s.json" in prostm("settings", "--json", "s.json").stdout
 
 
-def test_the_settings_file_can_be_read_as_it_is_and_with_every_key(prostm, refuses, tmp_path):
+def test_the_settings_file_can_be_read_unchanged_and_with_every_key(prostm, refuses, tmp_path):
     text = prostm("settings", "--toml").stdout
     assert all(not table for table in tomllib.loads(text).values())
     (tmp_path / "as-is.toml").write_text(text)
@@ -84,7 +84,7 @@ def test_the_settings_file_can_be_read_as_it_is_and_with_every_key(prostm, refus
     for name in ("as-is.toml", "every.toml"):
         assert listed(prostm, "--settings", name) == rows
 
-    # what is not as by default is set
+    # values that differ from the defaults are set
     text = prostm("settings", "plan", "--toml", "--paths", "2").stdout
     assert tomllib.loads(text) == {"plan": {"paths": 2}}
     refuses("settings", "--toml", "--json", "-", words=["exclude each other"])

@@ -1,4 +1,4 @@
-"""prostm study simulate: model observers in place of people."""
+"""prostm study simulate: model observers instead of people."""
 
 import json
 import re
@@ -15,7 +15,7 @@ NO_PEOPLE = "models, never of people"
 
 @pytest.fixture
 def simulated(prostm, tmp_path):
-    """Returns a function that simulates a small study, and returns what it says and its JSON."""
+    """Returns a function that simulates a small study and returns its output and its JSON."""
 
     def run(*arguments):
         said = prostm(*SMALL, *arguments, "--json", "simulated.json").stdout
@@ -39,7 +39,7 @@ def test_a_study_is_simulated_and_its_answers_are_analysed(simulated, prostm):
             low, high = row[scene]["interval"]
             assert 0 <= low <= row[scene]["right"] <= high <= 1
     assert rows["guess", "am"]["both"]["right"] == 0.5 and rows["guess", "am"]["d_prime"] == 0
-    # the words about strength say what its rows say
+    # the sentence about strength agrees with its rows
     shares = [rows["strength", method]["both"]["right"] for method in ("am", "pro-stm")]
     said_shares = re.findall(r"([\d.]+) % right with (am|pro-stm) \(four plumes feel \d\.\d\d times", result["words"])
     assert said_shares == [(f"{100 * share:.1f}", method) for share, method in zip(shares, ("am", "pro-stm"))]
@@ -64,7 +64,7 @@ def test_the_papers_scores_have_likelihoods(simulated):
     assert all(row["log_likelihood"] < 0 for row in result["rows"])
     assert result["people"]["am"]["paper"] == 0.61 and result["people"]["pro-stm"]["both"]["right"] == 97 / 128
     guess = [row["log_likelihood"] for row in result["rows"] if row["observer"] == "guess"]
-    assert guess == pytest.approx([-31.9, -51.8], abs=0.05)  # 16 binomial chances of a half, each
+    assert guess == pytest.approx([-31.9, -51.8], abs=0.05)  # 16 binomial probabilities with p = 1/2 each
 
 
 def test_a_signal_ends_it_without_files(program, tmp_path):

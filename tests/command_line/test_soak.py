@@ -17,7 +17,7 @@ def soak(program, folder, *arguments, minutes="0.1"):
 
 
 def child_of(process):
-    """Waits for the process that loads the cores."""
+    """Waits for the process that puts load on the cores."""
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
     wait_for(lambda: children.read_text().split())
     return int(children.read_text())
@@ -37,7 +37,7 @@ def check(result):
     assert result["dips_left_out"] == 0
 
 
-def test_a_soak_counts_what_its_run_counts(program, tmp_path):
+def test_a_soak_counts_like_its_run(program, tmp_path):
     process = soak(program, tmp_path)
     text, problem = process.communicate(timeout=120)
     result = json.loads((tmp_path / "soak.json").read_text())
@@ -48,12 +48,12 @@ def test_a_soak_counts_what_its_run_counts(program, tmp_path):
     assert [part["loaded"] for part in result["parts"]] == [False, False, False]
     assert result["minutes"] == pytest.approx(0.1, abs=0.01)
     missed = sum(dip["count"] for dip in result["dips"] if dip["what"] == "missed blocks")
-    # the device begins a moment before the first look, and goes on after the last one
+    # the device starts shortly before the first sample of the counters, and continues after the last one
     assert missed <= result["run"]["missed_blocks"]
     assert "first third, quiet" in text and "last third, quiet" in text and "wrote soak.json" in text
 
 
-def test_the_load_uses_all_cores_for_a_third_and_goes(program, tmp_path):
+def test_the_load_uses_all_cores_for_a_third_and_ends(program, tmp_path):
     process = soak(program, tmp_path, "--load")
     child = child_of(process)
     used = lambda: sum(map(int, Path(f"/proc/{child}/stat").read_text().rsplit(")", 1)[1].split()[11:13]))  # noqa: E731
@@ -67,11 +67,11 @@ def test_the_load_uses_all_cores_for_a_third_and_goes(program, tmp_path):
     quiet = [part for part in result["parts"] if not part["loaded"]]
     assert len(quiet) == 2 and process.returncode == (0 if all(part["dips"] == 0 for part in quiet) else 1)
     assert all(dip["cause"] == "the load of this soak" for dip in result["dips"] if dip["part"] == 1)
-    assert "second third, beside other work on all cores" in text
+    assert "second third, all cores loaded" in text
     assert not Path(f"/proc/{child}").exists()
 
 
-def test_ctrl_c_leaves_a_whole_result(program, tmp_path):
+def test_ctrl_c_leaves_a_complete_result(program, tmp_path):
     process = soak(program, tmp_path, "--load", minutes="30")
     time.sleep(2.5)
     process.send_signal(signal.SIGINT)
@@ -82,7 +82,7 @@ def test_ctrl_c_leaves_a_whole_result(program, tmp_path):
     assert result["stopped"] and not result["passed"] and 0 < result["minutes"] < 1
 
 
-def test_the_load_ends_with_a_program_that_is_killed(program, tmp_path):
+def test_the_load_ends_when_the_program_is_killed(program, tmp_path):
     process = soak(program, tmp_path, "--load", minutes="30")
     child = child_of(process)
     process.kill()

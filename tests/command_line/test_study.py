@@ -1,5 +1,5 @@
-"""prostm study analyse: pictures without texts over each other, thresholds, and tidy tables. prostm study run: what it
-refuses, a rehearsal, and a session that is killed."""
+"""prostm study analyse: figures without overlapping texts, thresholds, and tidy tables. prostm study run: rejected
+input, a rehearsal, and a session that is killed."""
 
 import csv
 import json
@@ -23,7 +23,7 @@ LINK = "{http://www.w3.org/1999/xlink}href"
 
 
 def boxes_of_texts(path):
-    """Returns the page's box and that of each text of an SVG picture of cairo, as (left, top, right, bottom)."""
+    """Returns the page's box and that of each text in an SVG figure by cairo, as (left, top, right, bottom)."""
     root = ElementTree.parse(path).getroot()
     glyphs = {}
     for symbol in root.iter(SVG + "symbol"):
@@ -69,14 +69,14 @@ def check_texts(path, least):
 @pytest.mark.parametrize("level", [False, True])
 @pytest.mark.parametrize("long_names", [False, True])
 @pytest.mark.parametrize("methods, scenes", [(1, 1), (2, 1), (2, 2), (3, 5), (4, 6)])
-def test_no_text_of_a_picture_covers_another(prostm, tmp_path, methods, scenes, long_names, level):
+def test_texts_in_a_figure_do_not_overlap(prostm, tmp_path, methods, scenes, long_names, level):
     write_answers(tmp_path / "a.csv", methods, scenes, 6, long_names=long_names, level=level)
     prostm("study", "analyse", "a.csv", "--figure", "a.svg")
     check_texts(tmp_path / "a.svg", 10)
 
 
 @pytest.mark.parametrize("people", [4, 60])
-def test_a_picture_holds_few_people_and_many(prostm, tmp_path, people):
+def test_a_figure_fits_few_people_and_many(prostm, tmp_path, people):
     write_answers(tmp_path / "a.csv", 2, 2, people, within=False)
     prostm("study", "analyse", "a.csv", "--figure", "a.svg")
     check_texts(tmp_path / "a.svg", 10)
@@ -87,13 +87,13 @@ def test_the_papers_scores_are_drawn(prostm, tmp_path):
     for name in ("a.svg", "a.png", "a.pdf"):
         done = prostm("study", "analyse", scores, "--figure", name)
         assert done.stdout.endswith(f"wrote {name}\n")
-    # title, two methods, axis with its name, chance, shares, scenes, two brackets with two lines each, the note's lines
+    # title, two methods, axis with its name, chance, shares, scenes, two brackets of two lines each, the note
     check_texts(tmp_path / "a.svg", 1 + 2 + 6 + 1 + 1 + 6 + 3 + 2 * 2 + 3)
     assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_thresholds_are_fitted_where_answers_have_levels(prostm, tmp_path):
+def test_thresholds_are_fitted_if_answers_have_levels(prostm, tmp_path):
     write_answers(tmp_path / "a.csv", 2, 1, 40, level=True)
     said = prostm("study", "analyse", "a.csv", "--lapse", "0.02", "--guess", "0.5", "--json", "a.json").stdout
     analysis = json.loads((tmp_path / "a.json").read_text())
@@ -113,10 +113,10 @@ def test_thresholds_are_fitted_where_answers_have_levels(prostm, tmp_path):
             assert (level["correct"], level["answers"]) == (sum(mine), len(mine))
     for of in found.values():
         assert (of["fit"] is None) == ("no_fit" in of)
-    assert "no fit: " in said  # of somebody, with 20 answers
+    assert "no fit: " in said  # for a participant, with 20 answers
 
 
-def test_levels_that_some_answers_lack_are_refused(prostm, refuses, tmp_path):
+def test_answers_of_which_some_lack_levels_are_rejected(prostm, refuses, tmp_path):
     header = "participant,method,scene,correct,level\n"
     (tmp_path / "a.csv").write_text(header + "1,am,x,1,0.5\n2,am,x,1,\n")
     refuses("study", "analyse", "a.csv", words=["a.csv, line 3: level is \"\"", "number"])
@@ -127,7 +127,7 @@ def test_levels_that_some_answers_lack_are_refused(prostm, refuses, tmp_path):
     assert "all answers are at one level" in prostm("study", "analyse", "a.csv").stdout
 
 
-def test_a_list_in_json_is_refused_with_its_conversion(refuses, tmp_path):
+def test_a_json_list_is_rejected_with_its_conversion(refuses, tmp_path):
     (tmp_path / "jspsych.json").write_text('\n[{"participant": "a", "method": "am", "scene": "x", "correct": true}]')
     for files in (["jspsych.json"], [MADE_UP, "jspsych.json"]):
         refuses("study", "analyse", *files, words=["jspsych.json", "list", "CSV", "to_csv"])
@@ -182,13 +182,13 @@ STUDY = ["study", "run", "short.toml", "--view-port", "0", "--participant"]
     (SHORT + "[method.b.pipeline]\ndevice = \"sim\"\n", ["[method.b] gives pipeline.device", "command line"]),
     (SHORT[:100], ["p.toml"]),
 ], ids=["syntax", "table", "bounds", "question", "scene", "methods", "device", "half"])
-def test_a_protocol_that_is_wrong_is_refused_with_its_place(refuses, tmp_path, text, words):
+def test_an_invalid_protocol_is_rejected_with_its_place(refuses, tmp_path, text, words):
     (tmp_path / "p.toml").write_text(text)
     refuses("study", "run", "p.toml", "--participant", "1", words=words)
     assert not (tmp_path / "answers").exists()
 
 
-def test_a_session_that_cannot_begin_leaves_nothing(refuses, tmp_path):
+def test_a_session_that_cannot_start_leaves_no_file(refuses, tmp_path):
     (tmp_path / "short.toml").write_text(SHORT)
     (tmp_path / "file").touch()
     refuses(*STUDY, "0", words=["--participant 0", "1 and 9999"])
@@ -197,7 +197,7 @@ def test_a_session_that_cannot_begin_leaves_nothing(refuses, tmp_path):
     refuses(*STUDY, "1", "--answers", "file", words=["--answers file cannot be a folder"])
     refuses(*STUDY, "1", "--resume", words=["participant 1 has not begun", "leave --resume out"])
     refuses(*STUDY, "1", "--rehearse", "-1", words=["--rehearse -1"])
-    refuses(*STUDY, "1", "--hand", "page", words=["--hand page", "those of a study have none"])
+    refuses(*STUDY, "1", "--hand", "page", words=["--hand page", "the pages of a study cannot move a hand"])
     refuses(*STUDY, "1", "--hand", "nowhere.hands.jsonl", words=["nowhere.hands.jsonl"])
     refuses("study", "run", "nowhere.toml", "--participant", "1", words=["nowhere.toml"])
     with socket.socket() as taken:
@@ -209,7 +209,7 @@ def test_a_session_that_cannot_begin_leaves_nothing(refuses, tmp_path):
     assert not list((tmp_path / "answers").iterdir())
 
 
-def test_a_rehearsal_goes_through_all_trials_and_is_told_from_answers(prostm, tmp_path):
+def test_a_rehearsal_runs_all_trials_and_is_distinguished_from_answers(prostm, tmp_path):
     (tmp_path / "short.toml").write_text(SHORT)
     for participant in "12":
         said = prostm(*STUDY, participant, "--rehearse", "0").stdout
@@ -219,7 +219,7 @@ def test_a_rehearsal_goes_through_all_trials_and_is_told_from_answers(prostm, tm
     assert "2 participants" in said
 
 
-def test_a_session_that_is_killed_goes_on_and_one_that_was_edited_does_not(program, prostm, refuses, tmp_path):
+def test_a_killed_session_resumes_and_an_edited_one_does_not(program, prostm, refuses, tmp_path):
     (tmp_path / "short.toml").write_text(SHORT)
     file = tmp_path / "answers" / "participant-7.jsonl"
     process = subprocess.Popen([str(program), *STUDY, "7"], cwd=tmp_path, stdin=subprocess.DEVNULL,
@@ -249,14 +249,14 @@ def test_a_session_that_is_killed_goes_on_and_one_that_was_edited_does_not(progr
     refuses(*STUDY, "7", "--resume", words=["begun with another protocol"])
 
 
-def test_answers_that_did_not_fit_on_the_disk_are_not_counted(program, prostm, tmp_path):
+def test_answers_that_do_not_fit_on_the_disk_are_not_counted(program, prostm, tmp_path):
     (tmp_path / "short.toml").write_text(SHORT.replace("repeats = 1", "repeats = 4"))
     prostm(*STUDY, "1", "--rehearse", "0")
     lines = (tmp_path / "answers" / "rehearsal-1.jsonl").read_bytes().splitlines(keepends=True)
     trials = [i for i, line in enumerate(lines) if json.loads(line)["kind"] == "trial"]
     limit = len(b"".join(lines[:trials[2]])) + len(lines[trials[2]]) // 2
 
-    def fill():  # stands for a full disk
+    def fill():  # emulates a full disk
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 
@@ -266,7 +266,7 @@ def test_answers_that_did_not_fit_on_the_disk_are_not_counted(program, prostm, t
                                preexec_fn=fill, restore_signals=False)
     seen = []
 
-    def tries_again():  # a line is begun and taken back: the file has its size, and another time
+    def tries_again():  # a line is started and taken back: the file keeps its size, with a new time
         if not file.exists():
             return False
         now = file.stat()
@@ -289,12 +289,12 @@ def test_a_number_is_decimal_however_it_is_written(prostm, refuses, tmp_path):
     refuses(*STUDY, "10", "--rehearse", "1", words=["participant 10 has begun"])
     refuses(*STUDY, " 10", "--rehearse", "1", words=["participant 10 has begun"])
     refuses(*STUDY, "0x10", words=["--participant 0x10", "number between 1 and 9999"])
-    # the same person under another file name
+    # the same person in a file with another name
     (tmp_path / "answers" / "rehearsal-10.jsonl").rename(tmp_path / "answers" / "first.jsonl")
     refuses(*STUDY, "10", "--rehearse", "1", words=["participant 10 has begun in answers/first.jsonl", "another number"])
 
 
-def test_a_participant_takes_the_place_of_another(prostm, refuses, tmp_path):
+def test_a_participant_replaces_another(prostm, refuses, tmp_path):
     (tmp_path / "short.toml").write_text("[study]\nparticipants = 4\nmethods = \"within\"\n" + SHORT + "[method.b.fluid]\ncells = 32\n")
     def header(number):
         return json.loads((tmp_path / "answers" / f"rehearsal-{number}.jsonl").read_text().splitlines()[0])
@@ -317,7 +317,7 @@ def test_a_participant_takes_the_place_of_another(prostm, refuses, tmp_path):
     assert "2 participants" in said
 
 
-def test_status_says_how_full_each_group_is(program, prostm, refuses, tmp_path):
+def test_status_reports_how_full_each_group_is(program, prostm, refuses, tmp_path):
     refuses("study", "status", words=["answers"])
     (tmp_path / "short.toml").write_text("[study]\ntitle = \"T\"\nparticipants = 4\n" + SHORT + "[method.b.fluid]\ncells = 32\n")
     (tmp_path / "answers").mkdir()
@@ -348,7 +348,7 @@ QUICK = {"settle = 2\n": "", "seconds = 60": "seconds = 0", "interval = 1.5": "i
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_each_example_with_levels_is_rehearsed_and_analysed(prostm, tmp_path, name):
+def test_each_example_with_levels_can_be_rehearsed_and_analysed(prostm, tmp_path, name):
     text = (ROOT / "data" / "protocols" / f"{name}.toml").read_text()
     for slow, quick in QUICK.items():
         text = text.replace(slow, quick)
@@ -376,7 +376,7 @@ def test_each_example_with_levels_is_rehearsed_and_analysed(prostm, tmp_path, na
         means = [sum(line["level"] for line in trials[i:i + 3]) / 3 for i in (0, 3)]
         assert [p["mean"] for p in of["participants"]] == pytest.approx(means)
         assert of["mean"] == pytest.approx(sum(means) / 2)
-        half = 12.7062 * abs(means[0] - means[1]) / 2  # t of one degree of freedom, sd / sqrt(2)
+        half = 12.7062 * abs(means[0] - means[1]) / 2  # t with one degree of freedom, sd / sqrt(2)
         assert of["interval"] == pytest.approx([of["mean"] - half, of["mean"] + half], rel=1e-3)
         assert f"it felt alike at {of['mean']:.4g}, the mean of 2 participants" in " ".join(said.split())
         assert all(line["changes"][-1][1] == line["level"] for line in trials if line["changes"])
@@ -385,7 +385,7 @@ def test_each_example_with_levels_is_rehearsed_and_analysed(prostm, tmp_path, na
         assert ("answers were right" in " ".join(said.split())) == (kind == "right")
     prostm("study", "analyse", "t.csv", "--json", "b.json")
     table = json.loads((tmp_path / "b.json").read_text())
-    del table["notes"], analysis["notes"]  # on files of participants, which the table is not
+    del table["notes"], analysis["notes"]  # about participants' files, which the table is not
     assert table == analysis, "the table says the same"
 
 
@@ -400,7 +400,7 @@ def test_one_participants_answers_are_analysed(prostm, tmp_path):
     write_rows(tmp_path / "a.csv", "participant,method,scene,correct,level", rows)
     said = " ".join(prostm("study", "analyse", "a.csv", "--json", "a.json", "--figure", "a.svg").stdout.split())
     assert said.startswith("1 participant, 2 methods")
-    assert "All answers are of one participant: they tell about this person alone" in said
+    assert "All answers are of one participant, so results about people in general" in said
     assert "Over participants" not in said
     analysis = json.loads((tmp_path / "a.json").read_text())
     comparison, = analysis["scenes"][0]["comparisons"]
@@ -455,12 +455,12 @@ def test_tables_of_other_programs_give_the_same_results(prostm, tmp_path, encodi
     assert "Jürgen" in tidy and tidy.count("\r\n") == 38
 
 
-def test_names_that_differ_in_spelling_alone_do_not_double_people(prostm, refuses, tmp_path):
+def test_names_that_differ_only_in_spelling_do_not_duplicate_people(prostm, refuses, tmp_path):
     rows = [[f"0{who}" if method == "am" else who, method, "x", (who + k) % 2] for who in range(1, 5) for method in ("am", "stm") for k in range(4)]
     write_rows(tmp_path / "a.csv", "participant,method,scene,correct", rows)
     refuses("study", "analyse", "a.csv", words=['participants "01" and "1"', "and others", "--merge-spellings"])
     said = prostm("study", "analyse", "a.csv", "--merge-spellings").stdout
-    assert said.startswith("4 participants, each with all methods") and "each pair is taken as one" in said
+    assert said.startswith("4 participants, each with all methods") and "each pair is treated as one" in said
     rows = [[f"{row[0]} " if row[1] == "stm" else f"\u00a0{row[0]}"] + row[1:] for row in rows]
     rows = [[row[0].replace("0", "")] + row[1:] for row in rows]
     write_rows(tmp_path / "a.csv", "participant,method,scene,correct", rows)
@@ -475,14 +475,14 @@ def test_tables_of_adjustments_and_of_mixed_kinds(prostm, refuses, tmp_path):
     refuses("study", "analyse", "a.csv", "--figure", "a.svg", words=["--figure", "these are adjustments"])
     refuses("study", "analyse", "a.csv", "--guess", "0.1", words=["--guess", "these are adjustments"])
     (tmp_path / "a.csv").write_text(header + "1,stm,x,0,1.2,adjusted\n1,stm,x,0,1.6,felt\n")
-    refuses("study", "analyse", "a.csv", words=["line 3: kind is \"felt\", and another one"])
+    refuses("study", "analyse", "a.csv", words=["line 3: kind is \"felt\", but earlier rows"])
     (tmp_path / "a.csv").write_text(header + "1,stm,x,0,1.2,tuned\n")
     refuses("study", "analyse", "a.csv", words=["line 2: kind", "right, felt or adjusted"])
     (tmp_path / "a.csv").write_text("participant,method,scene,correct,kind\n1,stm,x,0,felt\n")
     refuses("study", "analyse", "a.csv", words=["no column \"level\""])
 
 
-def test_a_protocol_with_levels_that_do_nothing_is_refused(refuses, tmp_path):
+def test_a_protocol_whose_levels_have_no_effect_is_rejected(refuses, tmp_path):
     text = (ROOT / "data" / "protocols" / "just-stronger.toml").read_text()
     (tmp_path / "p.toml").write_text(text.replace("full_scale_pressure = 0.31", "fade_time = 0.001"))
     refuses("study", "run", "p.toml", "--participant", "1", words=["plan.gain", "would change nothing", "full_scale_pressure"])

@@ -1,4 +1,4 @@
-"""A command line that cannot be understood gets one sentence with the nearest name and the right help page."""
+"""An invalid command line gets one sentence with the nearest name and the relevant help page."""
 
 import json
 
@@ -87,9 +87,9 @@ from test_bad_input import changed, hand_lines
      "capture does not run in real time, as --hand page needs; record it with prostm run --view --hand page --record "
      "x.h5"),
     (["solve", "foci.json", "--solver", "gspat"], 'did you mean "gs-pat"?'),
-    (["run", "--record", "x.txt"], "x.txt names no recording; it must end in .h5"),
-    (["capture", "--out", "x.json"], "x.json names no recording; it must end in .h5"),
-    (["run", "--figure", "x.json"], "x.json names no kind of figure; it must end in .png, .svg or .pdf"),
+    (["run", "--record", "x.txt"], "x.txt is not a name for a recording; it must end in .h5"),
+    (["capture", "--out", "x.json"], "x.json is not a name for a recording; it must end in .h5"),
+    (["run", "--figure", "x.json"], "x.json is not a known kind of figure; it must end in .png, .svg or .pdf"),
     (["run", "--json", "x.png"], "x.png would hold JSON, and .png is another kind of file; end its name in .json"),
     (["plan", "foci.json", "--json", "x.H5"],
      "x.H5 would hold JSON, and .h5 is another kind of file; end its name in .json"),
@@ -112,7 +112,7 @@ def test_help_in_every_way(program, prostm):
     for command in ("run", "plan", "settings", "help"):
         assert f"\n  {command} " in whole
     assert "Example:" in plan and "--figure" in plan
-    # the name of the program is the path that it was called by, or its own
+    # the program's name is the path that it was called by, or its own name
     assert prostm("help").stdout.replace("prostm", str(program), 1) == whole.replace("prostm", str(program), 0) or \
         prostm("help").stdout.splitlines()[2:] == whole.splitlines()[2:]
     assert prostm("help", "plan").stdout.splitlines()[2:] == plan.splitlines()[2:]
@@ -131,7 +131,7 @@ def test_why_a_file_cannot_be_read(refuses, tmp_path, name, what):
         assert refuses(*arguments) == f"prostm: {what}"
 
 
-def test_a_file_of_another_kind_is_named(refuses, prostm, tmp_path):
+def test_a_file_of_the_wrong_kind_is_named(refuses, prostm, tmp_path):
     prostm("capture", "--grid", "32", "--frames", "1", "--out", "run.h5")
     np.save(tmp_path / "a.npy", np.ones((3, 3)))
     (tmp_path / "field.json").write_text(changed())

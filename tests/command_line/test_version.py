@@ -1,4 +1,4 @@
-"""The version and the commit, in what the program prints and writes."""
+"""The version and the commit, in the program's output and files."""
 
 import json
 import re

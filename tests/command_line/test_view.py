@@ -1,4 +1,4 @@
-"""prostm run --view: its options, and a run that is viewed and ended from outside."""
+"""prostm run --view: its options, and runs that pages and signals end."""
 
 import json
 import signal
@@ -24,7 +24,7 @@ def start(program, folder, *arguments, port="0"):
 
 
 def end(process):
-    """Sends Ctrl-C; returns the exit status and the output since."""
+    """Sends Ctrl-C; returns the exit status and the remaining output."""
     process.send_signal(signal.SIGINT)
     out, _ = process.communicate(timeout=60)
     return process.returncode, out
@@ -55,12 +55,12 @@ def test_a_port_in_use_is_refused_in_a_sentence(refuses):
         refuses("run", "--seconds", "1", "--view", "--view-port", str(port), words=[str(port), "in use"])
 
 
-def test_listens_on_this_machine_alone(program, tmp_path):
+def test_listens_on_this_machine_only(program, tmp_path):
     process, address = start(program, tmp_path)
     try:
         assert numbers(address)["sequence"] >= 1
         port = int(address.rstrip("/").rsplit(":", 1)[1])
-        # 127.0.0.2 belongs to this machine too, but is not the requested address
+        # 127.0.0.2 also belongs to this machine, but is not the requested address
         with pytest.raises(OSError):
             socket.create_connection(("127.0.0.2", port), timeout=5)
         with pytest.raises(urllib.error.HTTPError) as refused:
@@ -71,7 +71,7 @@ def test_listens_on_this_machine_alone(program, tmp_path):
     assert status == 130
 
 
-def test_a_run_that_nothing_touched_ends_whole_too(program, tmp_path):
+def test_an_undisturbed_run_ends_completely(program, tmp_path):
     process, _ = start(program, tmp_path, "--seconds", "600", "--json", "summary.json", "--figure", "run.png", "--hand", "page")
     process.send_signal(signal.SIGTERM)
     out, errors = process.communicate(timeout=60)
@@ -81,7 +81,7 @@ def test_a_run_that_nothing_touched_ends_whole_too(program, tmp_path):
 
 
 def page_says(address, message):
-    """Connects as a page and sends a message; closing the returned socket makes the page leave."""
+    """Connects as a page and sends a message; closing the returned socket closes the page."""
     port = int(address.rstrip("/").rsplit(":", 1)[1])
     page = socket.create_connection(("127.0.0.1", port), timeout=60)
     page.sendall(f"GET /live HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
@@ -92,17 +92,17 @@ def page_says(address, message):
     return page
 
 
-def test_a_run_that_a_page_paused_and_left_ends(program, tmp_path):
+def test_a_run_paused_by_a_page_that_left_ends(program, tmp_path):
     process, address = start(program, tmp_path, "--seconds", "4", "--json", "summary.json")
     with page_says(address, {"type": "transport", "do": "pause"}):
         wait_for(lambda: numbers(address)["run"]["flags"] & 1)
     out, errors = process.communicate(timeout=60)
     assert process.returncode == 0 and errors == ""
-    assert out.startswith("No page is connected any more, so the paused run goes on, for ")
+    assert out.startswith("No page is connected any more, so the paused run resumes, for ")
     assert json.loads((tmp_path / "summary.json").read_text())["seconds"] == pytest.approx(4.0, abs=0.05)
 
 
-def test_stays_after_its_seconds(program, tmp_path):
+def test_stays_open_after_its_duration(program, tmp_path):
     process, address = start(program, tmp_path, "--seconds", "2", "--stay", "--json", "summary.json")
     wait_for(lambda: (tmp_path / "summary.json").exists())
     summary = json.loads((tmp_path / "summary.json").read_text())
@@ -111,10 +111,10 @@ def test_stays_after_its_seconds(program, tmp_path):
     wait_for(lambda: numbers(address)["run"]["world_steps"] > before + 10)
     status, out = end(process)
     assert status == 0
-    assert "goes on at " + address in out
+    assert "continues at " + address in out
 
 
-def test_the_same_port_at_once_again(program, tmp_path):
+def test_the_same_port_can_be_reused_at_once(program, tmp_path):
     process, address = start(program, tmp_path)
     port = address.rstrip("/").rsplit(":", 1)[1]
     numbers(address)

@@ -1,4 +1,4 @@
-"""Every command says which files it wrote, on the stream of its prose."""
+"""Every command names the files it wrote, on the stream of its prose."""
 
 import json
 
@@ -19,7 +19,7 @@ def written(done):
     return [line for line in done.stdout.splitlines() if line.startswith("wrote ")]
 
 
-def test_plan_field_and_solve_say_what_they_wrote(prostm, field, tmp_path):
+def test_plan_field_and_solve_name_their_files(prostm, field, tmp_path):
     assert written(prostm("plan", field)) == []
     done = prostm("plan", field, "--json", "plan.json", "--figure", "plan.svg")
     assert written(done) == ["wrote plan.svg", "wrote plan.json"]
@@ -31,14 +31,14 @@ def test_plan_field_and_solve_say_what_they_wrote(prostm, field, tmp_path):
     assert all((tmp_path / name).is_file() for name in ("plan.svg", "plan.json", "field.json", "drives.json"))
 
 
-def test_capture_and_bench_say_what_they_wrote(prostm):
+def test_capture_and_bench_name_their_files(prostm):
     done = prostm("capture", "--grid", "32", "--frames", "2", "--out", "a.h5", "--json", "capture.json")
     assert written(done) == ["wrote a.h5", "wrote capture.json"]
     done = prostm("bench", "a.h5", "--repeats", "1", "--json", "bench.json")
     assert written(done) == ["wrote bench.json"]
 
 
-def test_standard_output_is_no_file_that_was_written(prostm, field):
+def test_standard_output_is_not_named_as_a_file(prostm, field):
     done = prostm("plan", field, "--json", "-", "--figure", "plan.svg")
     json.loads(done.stdout)
     assert [line for line in done.stderr.splitlines() if line.startswith("wrote ")] == ["wrote plan.svg"]

@@ -43,7 +43,7 @@ struct Bench {
   static TrackSettings filter_settings(bool on) {
     TrackSettings s;
     if (on) return s;
-    s.smoothing_time = 0.001;  // velocities from one tracker frame to the next
+    s.smoothing_time = 0.001;  // velocities from adjacent tracker frames
     s.filter_position = s.filter_velocity = 1.0;
     return s;
   }
@@ -102,7 +102,7 @@ TEST(SkinContact, PointsLieOnTheSkinAndFaceTheArray) {
     }
   }
   EXPECT_GT(on_skin,
-            0.95 * static_cast<double>(stats.skin_cells));  // the array sees the underside only
+            0.95 * static_cast<double>(stats.skin_cells));  // the array faces the underside only
 }
 
 TEST(SkinContact, PlaneAxesFollowTheDevice) {
@@ -116,9 +116,9 @@ TEST(SkinContact, PlaneAxesFollowTheDevice) {
     for (const TargetField& patch : bench.target.patches) {
       const Eigen::Matrix3d R = patch.X_DP.linear();
       EXPECT_LT((R.transpose() * R - Eigen::Matrix3d::Identity()).norm(), 1e-12);
-      EXPECT_GE(R(2, 2), 0.25);  // the normal points out of the array
+      EXPECT_GE(R(2, 2), 0.25);  // the normal points away from the array
       EXPECT_NEAR(R(1, 0), -R(0, 2) * R(1, 2) / std::sqrt(1.0 - R(0, 2) * R(0, 2)),
-                  1e-12);  // x is D's x, projected
+                  1e-12);  // x is D's x axis, projected
       const Vec3 to_origin = patch.X_DP.translation() - bench.fluid.grid().p_DF;
       EXPECT_LT(to_origin.cross(R.col(2)).norm(), 1e-9);  // the origin is the foot of F's
       ++patches;
@@ -127,7 +127,7 @@ TEST(SkinContact, PlaneAxesFollowTheDevice) {
   EXPECT_GT(patches, 50);
 }
 
-/// Returns the cosine of the angle between the skin's normal and the array, by the exact distance.
+/// Returns the cosine of the angle between the exact normal of the skin and the array's direction.
 double cosine_of(const HandShape& shape, const Vec3& p_D) {
   constexpr double kNear = 2e-3;  // [m]
   Vec3 gradient;
@@ -139,7 +139,7 @@ double cosine_of(const HandShape& shape, const Vec3& p_D) {
 }
 
 TEST(SkinContact, PressureIsThatOfTheFluidOutsideTheSkin) {
-  // fine cells even under sanitizers: coarse ones fade nearly everywhere
+  // fine cells even under sanitizers: on coarse ones the pressure fades nearly everywhere
   Bench bench(still_hand(), "one-plume", true, 2, {}, 64);
   for (int i = 0; i < 150; ++i) bench.step();
   bench.extract();
@@ -157,7 +157,7 @@ TEST(SkinContact, PressureIsThatOfTheFluidOutsideTheSkin) {
         EXPECT_EQ(patch.pressure[c], 0.0);
         continue;
       }
-      // a clamped weighted mean of the eight cells around the reading point lies between their
+      // a clamped weighted mean of the eight cells around the sampling point lies between their
       // extremes
       const Vec2 x = patch.position(row, col);
       const Vec3 skin = patch.X_DP * Vec3(x.x(), x.y(), patch.height[c]);
@@ -175,7 +175,7 @@ TEST(SkinContact, PressureIsThatOfTheFluidOutsideTheSkin) {
       }
       if (high < low) continue;
       EXPECT_LE(patch.pressure[c], std::max(high, 0.0) + 1e-9);
-      // skin steeper than 40° fades; so may cells that contain some
+      // skin steeper than 40° fades; so may cells that contain such skin
       if (cosine_of(shape, skin) < std::cos(20 * kPi / 180)) continue;
       EXPECT_GE(patch.pressure[c], std::max(low, 0.0) - 1e-9);
       ++facing;
@@ -184,7 +184,7 @@ TEST(SkinContact, PressureIsThatOfTheFluidOutsideTheSkin) {
   EXPECT_GT(facing, 100);
 }
 
-TEST(SkinContact, TwoHandsAreTwoPatches) {
+TEST(SkinContact, TwoHandsGiveTwoPatches) {
   Bench bench(still_hand());
   bench.source->sample(kStep, bench.hands);
   to_device(default_tracker_pose(), bench.hands);
@@ -217,7 +217,7 @@ TEST(SkinContact, TwoHandsAreTwoPatches) {
   }
 }
 
-/// Shows the scripted hand and a second one whose fingers lie between its fingers.
+/// Adds a second hand to the scripted one, with its fingers between those of the first.
 void interlock(Bench& bench, double time) {
   bench.source->sample(time, bench.hands);
   to_device(default_tracker_pose(), bench.hands);
@@ -231,8 +231,8 @@ void interlock(Bench& bench, double time) {
 
 /// The skin of a hand in a patch's raster, with every ray marched and every point queried directly.
 struct PlainSkin {
-  int cells = 0;      // steep cells included
-  int differing = 0;  // cells of the patch's skin that lie elsewhere here
+  int cells = 0;      // including steep cells
+  int differing = 0;  // cells whose skin lies elsewhere than in the patch
 };
 PlainSkin plain_skin(const Bench& bench, const std::vector<HandShape>& shapes, int hand) {
   const HandRaster& raster = bench.rasteriser.raster();
@@ -268,7 +268,7 @@ PlainSkin plain_skin(const Bench& bench, const std::vector<HandShape>& shapes, i
   return plain;
 }
 
-TEST(SkinContact, IsThatOfThePlainMarchForInterlockedHands) {
+TEST(SkinContact, MatchesThePlainMarchForInterlockedHands) {
   Bench bench(still_hand());
   for (const double time : {7.0, 9.0, 11.0}) {
     interlock(bench, time);
@@ -284,14 +284,14 @@ TEST(SkinContact, IsThatOfThePlainMarchForInterlockedHands) {
   }
 }
 
-TEST(SkinContact, DoesNotDependOnTheThreadsAndAllocatesNothing) {
+TEST(SkinContact, DoesNotDependOnTheThreadsAndDoesNotAllocate) {
   Bench one(still_hand(), "one-plume", true, 1), three(still_hand(), "one-plume", true, 3);
   for (int i = 0; i < 5; ++i) {
     for (Bench* bench : {&one, &three}) {
       interlock(*bench, 9.0 + i * kStep);
       const test::HeapGuard guard;
       bench->extract();
-      if (i > 3) {  // the patches have reached their size
+      if (i > 3) {  // the patches have reached their final size
         EXPECT_EQ(guard.allocations(), 0u);
       }
     }
@@ -315,7 +315,7 @@ TEST(SkinContact, SkinHasTheWeightOfItsPartOfTheHand) {
     interlock(bench, 9.0 + i * kStep);
     const test::HeapGuard guard;
     bench.extract();
-    if (i > 3) {  // the patches have reached their size
+    if (i > 3) {  // the patches have reached their final size
       EXPECT_EQ(guard.allocations(), 0u);
     }
   }
@@ -342,13 +342,13 @@ TEST(SkinContact, SkinHasTheWeightOfItsPartOfTheHand) {
         palm += w == 1.0 ? 1 : 0;
       }
     }
-    EXPECT_GT(tips, 0);  // few with the coarser grid of sanitizer builds
+    EXPECT_GT(tips, 0);  // few on the coarser grid of sanitizer builds
     EXPECT_GT(fingers, tips);
     EXPECT_GT(palm, 0);  // few on a tilted hand
   }
 }
 
-TEST(SkinContact, PatchesHaveNoWeightsWhereTouchIsTheSameAllOver) {
+TEST(SkinContact, PatchesHaveNoWeightsIfAllPartsWeighTheSame) {
   ContactSettings same;
   same.touch_palm = same.touch_finger = same.touch_tip = 5.0;
   for (const ContactSettings& settings : {ContactSettings{}, same}) {
@@ -371,7 +371,7 @@ TEST(SkinContact, AHandOutsideTheBoxHasNoTargetAndIsCounted) {
   EXPECT_EQ(stats.joints_outside, static_cast<int>(kJointCount));
 }
 
-TEST(SkinContact, NoHandNoPatch) {
+TEST(SkinContact, WithoutAHandThereIsNoPatch) {
   Bench bench(still_hand());
   bench.hands.hands.clear();
   bench.rasteriser.rasterise(bench.hands, bench.pool);
@@ -380,8 +380,8 @@ TEST(SkinContact, NoHandNoPatch) {
   EXPECT_TRUE(bench.target.patches.empty());
 }
 
-/// Returns the rms change of the target between 25 Hz updates, relative to its rms, for a hand that
-/// is held still.
+/// Returns the rms change of the target between updates at 25 Hz, relative to its rms, for a hand
+/// that is held still.
 double flicker(double jitter, bool filter_on) {
   ScriptedHandSettings hand = still_hand();
   hand.jitter = jitter;
@@ -393,7 +393,7 @@ double flicker(double jitter, bool filter_on) {
     if (i < 150 || i % 2 != 0) continue;
     bench.extract();
     const TargetField& patch = bench.target.patches.at(0);
-    // compare on columns fixed to the device, whose middles are near the plane's cells
+    // compares columns fixed to the device, whose middles lie near the plane's cells
     std::vector<double> now(static_cast<std::size_t>(kCells) * kCells, 0.0);
     for (int row = 0; row < patch.rows; ++row) {
       for (int col = 0; col < patch.cols; ++col) {
@@ -420,7 +420,7 @@ double flicker(double jitter, bool filter_on) {
   return std::sqrt(change / power);
 }
 
-TEST(SkinContact, TrackerNoiseDoesNotShakeTheTarget) {
+TEST(SkinContact, TrackerNoiseHardlyChangesTheTarget) {
   const double filtered = flicker(0.3e-3, true), unfiltered = flicker(0.3e-3, false),
                quiet = flicker(0.0, true);
   RecordProperty("filtered_percent", static_cast<int>(100 * filtered));
@@ -431,7 +431,7 @@ TEST(SkinContact, TrackerNoiseDoesNotShakeTheTarget) {
       "%.0f %% unfiltered, %.0f %% without noise\n",
       100 * filtered, 100 * unfiltered, 100 * quiet);
   EXPECT_LE(filtered, 0.30);
-  EXPECT_GT(unfiltered, 2.0 * filtered);  // due to the filter
+  EXPECT_GT(unfiltered, 2.0 * filtered);  // the effect of the filter
 }
 
 TEST(SkinContact, RejectsBadSettings) {

@@ -14,7 +14,7 @@ namespace {
 
 const GridShape kGrid{64, 64, 64, 0.36 / 64, Vec3(-0.18, -0.18, 0.0)};
 
-/// Samples the scripted hand; if `apart` [m] is not 0, adds a second one beside it, 20 mm higher.
+/// Samples the scripted hand; if `apart` [m] is not 0, adds a second one next to it, 20 mm higher.
 HandFrame hands_at(double time, double apart, const Vec3& by = Vec3::Zero()) {
   HandFrame frame;
   make_scripted_hand({}, {})->sample(time, frame);
@@ -55,7 +55,7 @@ struct Ray {
   Vec3 start, direction;
 };
 
-/// Returns a ray towards a point near a hand, from any side.
+/// Returns a ray towards a point near a hand, from any direction.
 Ray random_ray(const HandShape& shape, Random& random) {
   const Vec3 half = 0.6 * (shape.upper() - shape.lower());
   const Vec3 to = 0.5 * (shape.lower() + shape.upper()) + random_vector(random).cwiseProduct(half);
@@ -63,7 +63,7 @@ Ray random_ray(const HandShape& shape, Random& random) {
   return {to - random.uniform(0.0, 0.15) * direction, direction};
 }
 
-/// Returns a ray along the skin, within a fifth of a millimetre of touching it.
+/// Returns a ray that is tangent to the skin within a fifth of a millimetre.
 Ray grazing_ray(const HandShape& shape, Random& random) {
   Ray ray = random_ray(shape, random);
   Vec3 p = ray.start;
@@ -90,8 +90,8 @@ void compare(const Scene& scene, const Ray& ray, Compared& count) {
   ++(plain < 0.0 ? count.misses : count.crossings);
 }
 
-TEST(SkinRays, CrossTheSkinWhereThePlainMarchDoes) {
-  // one hand, two, two interlocked, and two that reach through the grid's bottom and side
+TEST(SkinRays, HitTheSkinWhereThePlainMarchDoes) {
+  // one hand, two, two interlocked, and two that extend beyond the grid's bottom and side
   const HandFrame frames[] = {hands_at(11.6, 0.0), hands_at(9.0, 0.15), hands_at(7.2, 0.012),
                               hands_at(9.0, 0.1, Vec3(0.13, 0.02, -0.18))};
   Random random(1);
@@ -111,10 +111,10 @@ TEST(SkinRays, CrossTheSkinWhereThePlainMarchDoes) {
   }
 }
 
-TEST(SkinRays, ColumnsCrossTheSkinWhereThePlainMarchDoes) {
+TEST(SkinRays, ColumnsHitTheSkinWhereThePlainMarchDoes) {
   Scene scene(hands_at(11.6, 0.0));
   int crossings = 0;
-  // one scene after another in the same rays: no trace of the last one may remain
+  // several scenes with the same rays: nothing of an earlier scene may remain
   for (const double apart : {0.15, 0.0, 0.012}) {
     for (const double below : {0.0, 0.1, 0.18}) {
       scene.show(hands_at(9.0, apart, Vec3(0.05, 0.0, -below)));
@@ -138,7 +138,7 @@ TEST(SkinRays, ColumnsCrossTheSkinWhereThePlainMarchDoes) {
   EXPECT_GT(crossings, 2000);
 }
 
-TEST(SkinRays, WithoutAHandThereIsNoSkinAndNothingIsAllocated) {
+TEST(SkinRays, WithoutAHandThereIsNoSkinAndNoAllocation) {
   Scene scene(hands_at(11.6, 0.15));
   const test::HeapGuard guard;
   scene.rays.set(scene.raster());
@@ -149,7 +149,7 @@ TEST(SkinRays, WithoutAHandThereIsNoSkinAndNothingIsAllocated) {
   EXPECT_LT(scene.rays.march(Vec3(0, 0, 0.01), Vec3::UnitZ(), 0.3), 0.0);
 }
 
-TEST(SkinOwner, IsTheHandWhoseDistanceIsTheSmaller) {
+TEST(SkinOwner, IsTheHandWithTheSmallerDistance) {
   const double near = 0.008;
   for (const double apart : {0.25, 0.1, 0.03, 0.012, 1e-3}) {
     const Scene scene(hands_at(9.0, apart));
@@ -159,7 +159,7 @@ TEST(SkinOwner, IsTheHandWhoseDistanceIsTheSmaller) {
     int count[2] = {0, 0};
     Vec3 p = Vec3::Zero();
     for (int n = 0; n < 20000; ++n) {
-      // sometimes at a new place, otherwise a short way along the skin
+      // sometimes at a new position, otherwise a short distance along the skin
       const HandShape& shape = scene.shapes[static_cast<std::size_t>(n / 40) % 2];
       p = n % 40 == 0 ? random_ray(shape, random).start : Vec3(p + 0.006 * random_vector(random));
       const SurfacePoint skin = shape.query(p);

@@ -94,8 +94,8 @@ Hand flat_hand() {
   return frame.hands.at(0);
 }
 
-/// Returns the hand turned rigidly about an axis through its middle, which is put 200 mm above the
-/// array.
+/// Returns the hand rotated rigidly about an axis through its middle, which is placed 200 mm above
+/// the array.
 Hand turned(Hand hand, double by, const Vec3& axis) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : hand.position) middle += p / kJointCount;
@@ -117,7 +117,7 @@ struct Felt {
   double force = 0.0, area = 0.0;
 };
 
-TEST(TurningHand, PlaneForceAndAreaChangeLittleFromDegreeToDegree) {
+TEST(TurningHand, PlaneForceAndAreaChangeLittlePerDegree) {
   Air air;
   for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0),
                            Vec3(1, -2, 0), Vec3(-1, 2, 0), Vec3(2, 1, 0), Vec3(-1, 1, 0)}) {
@@ -155,7 +155,7 @@ TEST(TurningHand, PlaneForceAndAreaChangeLittleFromDegreeToDegree) {
   }
 }
 
-/// Returns the largest angle by which a bone has turned.
+/// Returns the largest angle by which a bone has rotated.
 double bones_turn(const Hand& before, const Hand& now) {
   double largest = 0.0;
   for (std::size_t j = 1; j < kJointCount; ++j) {
@@ -169,7 +169,7 @@ double bones_turn(const Hand& before, const Hand& now) {
   return largest;
 }
 
-/// Returns the hand that a patch belongs to: the nearest one to one of its cells.
+/// Returns the hand that a patch belongs to: the one nearest to a cell of the patch.
 const Hand& hand_of(const TargetField& patch, const HandFrame& frame) {
   std::size_t cell = 0;
   while (patch.skin[cell] == 0) ++cell;
@@ -259,7 +259,7 @@ Skill skill_of(const TargetFrame& target) {
           score_physical(patch, field.envelope, 0.0).skill_0};
 }
 
-TEST(TurningHand, WhatIsPlannedIsPlayedUpToTheLimit) {
+TEST(TurningHand, PlannedPressureIsPlayedUpToTheLimit) {
   Air air;
   const std::vector<Vec2> four = {
       {0.024, 0.024}, {-0.024, 0.024}, {0.024, -0.024}, {-0.024, -0.024}};

@@ -56,8 +56,8 @@ TEST(Geometry, CrossIsPositiveCounterClockwise) {
   EXPECT_EQ(cross(Vec2(3.0, 1.0), Vec2(6.0, 2.0)), 0.0);
 }
 
-// Each cell and node has its own index, in a row without gaps, x fastest, then y.
-TEST(GridShape, IndicesAreARowWithoutGaps) {
+// Each cell and node has its own index. Indices are contiguous, x fastest, then y.
+TEST(GridShape, IndicesAreContiguous) {
   const GridShape grid{3, 4, 5, 0.01, Vec3(-0.1, 0.2, 0.3)};
   EXPECT_EQ(grid.cell_count(), 60u);
   EXPECT_EQ(grid.node_count(), 120u);
@@ -90,7 +90,7 @@ TEST(GridShape, CentresLieBetweenNodes) {
   EXPECT_TRUE(grid.cell_centre(1, 2, 3).isApprox(0.5 * (grid.node(1, 2, 3) + grid.node(2, 3, 4))));
 }
 
-TEST(GridShape, EqualWhenEveryPartIs) {
+TEST(GridShape, IsEqualIfEveryPartIs) {
   const GridShape grid{3, 4, 5, 0.01, Vec3(-0.1, 0.2, 0.3)};
   GridShape other = grid;
   EXPECT_TRUE(grid == other);
@@ -98,14 +98,14 @@ TEST(GridShape, EqualWhenEveryPartIs) {
   EXPECT_FALSE(grid == other);
 }
 
-TEST(StageTimer, IsMonotoneAndLapsAddUp) {
+TEST(StageTimer, IsMonotonicAndLapsAddUp) {
   StageTimer whole, laps;
   double previous = 0.0, sum = 0.0;
   for (int i = 0; i < 1000; ++i) {
     sum += laps.lap();
     const double now = whole.seconds();
     ASSERT_GE(now, previous);
-    // the whole started first and is read last
+    // the total started first and is read last
     ASSERT_LE(sum, now + 1e-9);
     previous = now;
   }

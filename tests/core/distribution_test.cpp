@@ -38,7 +38,7 @@ void expect_exact_moments(const Summary& s, const std::vector<double>& values) {
   EXPECT_EQ(s.max, *std::max_element(values.begin(), values.end()));
 }
 
-TEST(Quantile, IsOfTheNearestRank) {
+TEST(Quantile, UsesTheNearestRank) {
   EXPECT_EQ(quantile({}, 0.5), 0.0);
   EXPECT_EQ(quantile({3.0}, 0.0), 3.0);
   EXPECT_EQ(quantile({4.0, 1.0, 3.0, 2.0}, 0.5), 2.0);
@@ -46,7 +46,7 @@ TEST(Quantile, IsOfTheNearestRank) {
   EXPECT_EQ(quantile({4.0, 1.0, 3.0, 2.0}, 1.0), 4.0);
 }
 
-TEST(Distribution, EmptyIsAllZeros) {
+TEST(Distribution, EmptyGivesZeros) {
   const Summary s = Distribution().summary();
   EXPECT_EQ(s.n, 0u);
   EXPECT_EQ(s.mean, 0.0);
@@ -106,7 +106,7 @@ TEST(Distribution, ThinsEvenlyWhenFull) {
   }
 }
 
-TEST(Distribution, AddAllocatesNothing) {
+TEST(Distribution, AddDoesNotAllocate) {
   Distribution distribution(64);
   const test::HeapGuard guard;
   for (int i = 0; i < 10000; ++i) distribution.add(i);

@@ -14,7 +14,7 @@ namespace {
 using test::input_error;
 using testing::HasSubstr;
 
-TEST(WriteFile, ReplacesTheWholeContentAndLeavesNothingElse) {
+TEST(WriteFile, ReplacesTheWholeContentAndLeavesNoOtherFile) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.json"), bytes("one\0two", 7);
   write_file(path, "something longer that was there before");
@@ -23,7 +23,7 @@ TEST(WriteFile, ReplacesTheWholeContentAndLeavesNothingElse) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
-TEST(WriteFile, KeepsALinkAndWritesWhatItPointsTo) {
+TEST(WriteFile, KeepsALinkAndWritesItsTarget) {
   const test::TemporaryFolder folder;
   write_file(folder.file("target"), "old");
   std::filesystem::create_symlink(folder.file("target"), folder.file("link"));
@@ -32,7 +32,7 @@ TEST(WriteFile, KeepsALinkAndWritesWhatItPointsTo) {
   EXPECT_EQ(read_file(folder.file("target")), "new");
 }
 
-TEST(WriteFile, NamesAMissingFolderAndAFolder) {
+TEST(WriteFile, ReportsAMissingFolderAndAFolder) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("missing/a.json");
   EXPECT_THAT(input_error([&] { write_file(path, "x"); }),
@@ -40,7 +40,7 @@ TEST(WriteFile, NamesAMissingFolderAndAFolder) {
   EXPECT_THAT(input_error([&] { write_file(folder.file(""), "x"); }), HasSubstr("is a folder"));
 }
 
-TEST(CheckWritable, SaysBeforeTheWorkWhatWriteFileWouldSayAfterIt) {
+TEST(CheckWritable, ReportsInAdvanceWhatWriteFileWouldReport) {
   const test::TemporaryFolder folder;
   check_writable("-");
   check_writable(folder.file("a.json"));
@@ -51,7 +51,7 @@ TEST(CheckWritable, SaysBeforeTheWorkWhatWriteFileWouldSayAfterIt) {
   EXPECT_THAT(input_error([&] { check_writable(folder.file("")); }), HasSubstr("is a folder"));
 }
 
-TEST(WriteFile, SaysThatADiskIsFullAndKeepsWhatWasThere) {
+TEST(WriteFile, ReportsAFullDiskAndKeepsTheOldContent) {
   EXPECT_THAT(input_error([] { write_file("/dev/full", "x"); }), HasSubstr("No space left"));
 
   const test::TemporaryFolder folder;
@@ -67,7 +67,7 @@ TEST(WriteFile, SaysThatADiskIsFullAndKeepsWhatWasThere) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
-TEST(WriteFile, SaysThatAFolderIsNotWritable) {
+TEST(WriteFile, ReportsAFolderThatIsNotWritable) {
   if (::geteuid() == 0) {
     // root may write into any folder except the kernel's
     EXPECT_THAT(input_error([] { write_file("/proc/prostm", "x"); }),
@@ -81,7 +81,7 @@ TEST(WriteFile, SaysThatAFolderIsNotWritable) {
   ::chmod(folder.file("").c_str(), 0700);
 }
 
-TEST(ReadFile, SaysWhatCannotBeRead) {
+TEST(ReadFile, ReportsFilesThatCannotBeRead) {
   const test::TemporaryFolder folder;
   EXPECT_THAT(input_error([&] { read_file(folder.file("none")); }),
               HasSubstr("none cannot be read: there is no such file"));
@@ -94,11 +94,11 @@ TEST(ReadFile, SaysWhatCannotBeRead) {
   write_file(folder.file("large"), std::string((3U << 20) + 1, 'x'));
   EXPECT_THAT(input_error([&] { read_file(folder.file("large"), 3U << 20); }),
               HasSubstr("larger than the 3 MB"));
-  // a file of the kernel that does not report its size
+  // a file of the kernel, which does not report its size
   EXPECT_THAT(input_error([&] { read_file("/proc/self/maps", 10); }), HasSubstr("larger than"));
 }
 
-TEST(KindByContent, KnowsTheFilesThatPeopleMixUp) {
+TEST(KindByContent, RecognisesFilesThatAreOftenConfused) {
   EXPECT_THAT(kind_by_content(std::string("\x89HDF\r\n\x1a\n and more")), HasSubstr("HDF5 file"));
   EXPECT_EQ(kind_by_content("\x89PNG\r\n\x1a\n"), "a PNG picture");
   EXPECT_THAT(kind_by_content("\x93NUMPY\x01"), HasSubstr("NPY"));
@@ -107,13 +107,13 @@ TEST(KindByContent, KnowsTheFilesThatPeopleMixUp) {
     EXPECT_EQ(kind_by_content(other), "");
 }
 
-TEST(IsNot, NamesTheKindThatItFinds) {
+TEST(IsNot, NamesTheDetectedKind) {
   EXPECT_EQ(is_not("\x93NUMPY\x01", "a PNG picture"), "is an NPY file, not a PNG picture");
   EXPECT_EQ(is_not("\x93NUMPY\x01", "an NPY file"), "is not an NPY file");
   EXPECT_EQ(is_not("1 2 3", "JSON"), "is not JSON");
 }
 
-TEST(ReadFile, RefusesPipesAndDevicesWithoutWaiting) {
+TEST(ReadFile, RejectsPipesAndDevicesWithoutBlocking) {
   const test::TemporaryFolder folder;
   const std::string pipe = folder.file("pipe");
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
@@ -124,7 +124,7 @@ TEST(ReadFile, RefusesPipesAndDevicesWithoutWaiting) {
   }
 }
 
-TEST(WriteFile, KeepsAProtectedFileAlsoFromRoot) {
+TEST(WriteFile, KeepsAProtectedFileEvenForRoot) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.json");
   write_file(path, "old");
@@ -138,7 +138,7 @@ TEST(WriteFile, KeepsAProtectedFileAlsoFromRoot) {
   EXPECT_EQ(read_file(path), "old");
 }
 
-TEST(WriteFile, MakesTheFileThatALinkPointsTo) {
+TEST(WriteFile, CreatesTheTargetOfALink) {
   const test::TemporaryFolder folder;
   std::filesystem::create_symlink("target", folder.file("link"));
   write_file(folder.file("link"), "new");
@@ -146,7 +146,7 @@ TEST(WriteFile, MakesTheFileThatALinkPointsTo) {
   EXPECT_EQ(read_file(folder.file("target")), "new");
 }
 
-TEST(SameFile, IsFoundByAllOfItsNamesAndBeforeItIsThere) {
+TEST(SameFile, IsRecognisedByAnyNameEvenBeforeItExists) {
   const test::TemporaryFolder folder;
   const std::string a = folder.file("a"), b = folder.file("b"), c = folder.file("c");
   write_file(a, "x");

@@ -16,7 +16,7 @@ namespace {
 
 using Block = std::array<std::uint64_t, 64>;  // larger than any atomic write
 
-TEST(Latest, HasNothingNewUntilSomethingIsPublished) {
+TEST(Latest, HasNothingNewBeforeTheFirstPublication) {
   Latest<int> latest(7);
   EXPECT_FALSE(latest.refresh());
   EXPECT_EQ(latest.value(), 7);
@@ -25,7 +25,7 @@ TEST(Latest, HasNothingNewUntilSomethingIsPublished) {
   EXPECT_EQ(latest.value(), 7);
 }
 
-TEST(Latest, NewestWinsAndComesOnce) {
+TEST(Latest, NewestValueIsReadOnce) {
   Latest<int> latest;
   for (int i = 1; i <= 5; ++i) {
     latest.draft() = i;
@@ -37,7 +37,7 @@ TEST(Latest, NewestWinsAndComesOnce) {
   EXPECT_EQ(latest.value(), 5);
 }
 
-TEST(Latest, ValueOfTheReaderIsLeftAloneByTheWriter) {
+TEST(Latest, TheWriterDoesNotTouchTheReadersValue) {
   Latest<int> latest;
   latest.draft() = 1;
   latest.publish();
@@ -50,7 +50,7 @@ TEST(Latest, ValueOfTheReaderIsLeftAloneByTheWriter) {
 }
 
 // The writer fills every word of a block with its number; a torn block would hold two numbers.
-TEST(Latest, NeverTornAndMonotoneBetweenThreads) {
+TEST(Latest, IsNeitherTornNorReorderedBetweenThreads) {
   const std::uint64_t last = test::reduced(300000);
   Latest<Block> latest;
   std::thread writer([&] {
@@ -77,7 +77,7 @@ TEST(Latest, NeverTornAndMonotoneBetweenThreads) {
   EXPECT_FALSE(latest.refresh());
 }
 
-TEST(Latest, AllocatesNothing) {
+TEST(Latest, DoesNotAllocate) {
   Latest<Block> latest;
   const test::HeapGuard guard;
   for (std::uint64_t n = 0; n < 100; ++n) {

@@ -29,12 +29,12 @@ Vector random_vector(Random& random, float least, float most) {
   return v;
 }
 
-/// A step and the change of the gradient over it, on a convex quadratic form.
+/// A step and the resulting change of the gradient, on a convex quadratic form.
 struct Pair {
   Vector step, change;
 };
 
-/// −H g, with H from the updates of BFGS over the pairs, the oldest first [Nocedal & Wright, 7.16].
+/// −H g, with H from the BFGS updates over the pairs, oldest first [Nocedal & Wright, 7.16].
 Eigen::VectorXd dense_direction(const std::vector<Pair>& pairs, const Operations& operations,
                                 const Vector& gradient) {
   const Pair& last = pairs.back();
@@ -60,7 +60,7 @@ void keep(LbfgsMemory<Vector, kSteps>& memory, const Operations& operations, con
   memory.keep(curvature, curvature / operations.dot(pair.change, scaled));
 }
 
-TEST(LbfgsMemory, GivesTheDirectionOfTheDenseUpdates) {
+TEST(LbfgsMemory, GivesTheDirectionOfDenseUpdates) {
   Random random(1);
   for (int trial = 0; trial < 20'000; ++trial) {
     const Operations operations{random_vector(random, 0.5F, 2.0F)};
@@ -68,7 +68,7 @@ TEST(LbfgsMemory, GivesTheDirectionOfTheDenseUpdates) {
     const Vector gradient = random_vector(random, -1.0F, 1.0F);
     LbfgsMemory<Vector, kSteps> memory;
     std::vector<Pair> pairs;
-    const auto kept = static_cast<std::size_t>(1 + trial % 6);  // more than it has room for, too
+    const auto kept = static_cast<std::size_t>(1 + trial % 6);  // at times more than fit
     for (std::size_t i = 0; i < kept; ++i) {
       const Vector step = random_vector(random, -1.0F, 1.0F);
       pairs.push_back({step, curvature.cwiseProduct(step)});
@@ -83,7 +83,7 @@ TEST(LbfgsMemory, GivesTheDirectionOfTheDenseUpdates) {
   }
 }
 
-TEST(LbfgsMemory, IsThePreconditionerBeforeTheFirstStepAndAfterForgetting) {
+TEST(LbfgsMemory, EqualsThePreconditionerBeforeTheFirstStepAndAfterForgetting) {
   Random random(2);
   const Operations operations{random_vector(random, 0.5F, 2.0F)};
   const Vector gradient = random_vector(random, -1.0F, 1.0F);

@@ -28,7 +28,7 @@ std::vector<std::string>& warnings() {
   return all;
 }
 
-TEST(AdvisoryLock, TellsAHeldLockFromAFileSystemWithoutLocks) {
+TEST(AdvisoryLock, DistinguishesAHeldLockFromAFileSystemWithoutLocks) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a");
   write_file(path, "x");
@@ -49,7 +49,7 @@ TEST(AdvisoryLock, TellsAHeldLockFromAFileSystemWithoutLocks) {
   ::close(two);
 }
 
-/// A lock file of a process that differs from this one in some members.
+/// A lock file of another process, made from this one's by changing some members.
 class LockFiles : public testing::Test {
  protected:
   LockFiles() : path_(folder_.file("a.jsonl")), lock_(path_ + ".lock") {
@@ -74,7 +74,7 @@ class LockFiles : public testing::Test {
   nlohmann::json own_;
 };
 
-TEST_F(LockFiles, HoldForALifetimeOnEveryFileSystem) {
+TEST_F(LockFiles, LastForALifetimeOnEveryFileSystem) {
   EXPECT_FALSE(std::filesystem::exists(lock_));
   {
     const LockFile file(path_, ForeignLock::Respected, "--force");
@@ -82,15 +82,15 @@ TEST_F(LockFiles, HoldForALifetimeOnEveryFileSystem) {
     const test::NoLocks none(ENOLCK);
     EXPECT_THAT(refusal(), AllOf(HasSubstr("is being written by another program"),
                                  HasSubstr(std::to_string(::getpid()))));
-    // an option for other machines does not take it from a process that runs here
+    // the option concerns other machines, so it does not override a process of this one
     EXPECT_THAT(input_error([&] { const LockFile other(path_, ForeignLock::Replaced, "--force"); }),
                 HasSubstr("is being written by another program"));
   }
   EXPECT_EQ(folder_.entries(), 0U);
 }
 
-TEST_F(LockFiles, OfACrashAreReplacedOnTheSameHost) {
-  // a process that ended without removing it
+TEST_F(LockFiles, AreReplacedAfterACrashOnTheSameHost) {
+  // a process that ends without removing the file
   const pid_t child = ::fork();
   if (child == 0) {
     static_cast<void>(new LockFile(path_, ForeignLock::Respected, "--force"));
@@ -99,7 +99,7 @@ TEST_F(LockFiles, OfACrashAreReplacedOnTheSameHost) {
   ::waitpid(child, nullptr, 0);
   EXPECT_THAT(notice(ForeignLock::Respected),
               AllOf(HasSubstr("no longer runs"), HasSubstr(std::to_string(child))));
-  leave({{"started", "1"}});  // the number of the process was used again
+  leave({{"started", "1"}});  // the process number has been reused
   EXPECT_THAT(notice(ForeignLock::Respected), HasSubstr("no longer runs"));
   if (own_["machine"] != "") {
     leave({{"boot", "an earlier start of the machine"}});
@@ -108,7 +108,7 @@ TEST_F(LockFiles, OfACrashAreReplacedOnTheSameHost) {
   EXPECT_EQ(folder_.entries(), 0U);
 }
 
-TEST_F(LockFiles, OfOtherHostsAndContainersNeedTheOption) {
+TEST_F(LockFiles, OfOtherHostsAndContainersRequireTheOption) {
   for (const nlohmann::json& change :
        {nlohmann::json{{"host", "lab-2"}}, nlohmann::json{{"machine", "another"}},
         nlohmann::json{{"pids", "pid:[1]"}}}) {
@@ -120,13 +120,13 @@ TEST_F(LockFiles, OfOtherHostsAndContainersNeedTheOption) {
   }
   leave({{"host", "lab-2"}});
   EXPECT_THAT(refusal(), HasSubstr("on lab-2"));
-  for (const char* text : {"", "{", "[]", "{\"host\":1}"}) {  // a crash while it was written
+  for (const char* text : {"", "{", "[]", "{\"host\":1}"}) {  // a crash while the file was written
     std::ofstream(lock_) << text;
     EXPECT_THAT(refusal(), HasSubstr("give --force"));
   }
 }
 
-TEST_F(LockFiles, ThatWereTakenOverAreLeftToTheirNewOwner) {
+TEST_F(LockFiles, AreKeptIfAnotherOwnerHasReplacedThem) {
   {
     const LockFile file(path_, ForeignLock::Respected, "--force");
     leave({{"host", "lab-2"}});
@@ -135,7 +135,7 @@ TEST_F(LockFiles, ThatWereTakenOverAreLeftToTheirNewOwner) {
   EXPECT_EQ(folder_.entries(), 1U);
 }
 
-TEST_F(LockFiles, NeedAFolder) {
+TEST_F(LockFiles, RequireAFolder) {
   const std::string path = folder_.file("missing/a");
   EXPECT_THAT(input_error([&] { const LockFile file(path, ForeignLock::Respected, "--force"); }),
               AllOf(HasSubstr(path + ".lock"), HasSubstr("cannot be created")));

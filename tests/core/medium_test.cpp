@@ -17,15 +17,15 @@ Medium air_at(double celsius, double humidity) {
   return air;
 }
 
-/// Returns the rest of (M5) if both relaxations are far too slow to follow.
+/// Returns what remains of (M5) if both relaxations are far too slow to follow.
 double classical(const Medium& air, double frequency) {
   return 1.84e-11 * frequency * frequency * std::sqrt(air.temperature / 293.15) * 101325.0 /
          air.pressure;
 }
 
 // ISO 9613-2:1996, Table 2: dB/km at the octave bands from 63 Hz to 8 kHz, whose exact centres are
-// 1000·10^{0.3n} Hz; the table has two or three digits.
-TEST(Absorption, AgreesWithTheTableOfTheStandard) {
+// 1000·10^{0.3n} Hz. The table gives two or three digits.
+TEST(Absorption, AgreesWithTheStandardsTable) {
   struct Row {
     double celsius, humidity;
     std::array<double, 8> db_per_km;
@@ -57,14 +57,14 @@ TEST(Absorption, IsAboutADecibelAMetreAtTheCarrier) {
   EXPECT_NEAR(air.absorption(40e3), 0.1518, 0.0001);
 }
 
-TEST(Absorption, DecibelsAndNepersSayTheSame) {
+TEST(Absorption, DecibelsAndNepersAgree) {
   const Medium air;
   const double r = 3.7;
   EXPECT_NEAR(-20.0 * std::log10(std::exp(-air.absorption(40e3) * r)), air.absorption_db(40e3) * r,
               1e-12);
 }
 
-// For a fixed share of water, absorption per wavelength is a function of frequency over pressure.
+// At a fixed fraction of water, absorption per wavelength depends on frequency over pressure.
 TEST(Absorption, FollowsFrequencyOverPressure) {
   Random random(11);
   for (int trial = 0; trial < 200; ++trial) {
@@ -86,7 +86,7 @@ TEST(Absorption, RisesWithFrequencyAboveTheClassicalPart) {
     EXPECT_GT(air.absorption(1.01 * frequency), air.absorption(frequency));
     EXPECT_GT(air.absorption(frequency), classical(air, frequency));
   }
-  // far above the relaxations of dry air (24 and 9 Hz) they add a constant
+  // far above the relaxation frequencies of dry air (24 and 9 Hz) they add a constant
   const Medium dry = air_at(20.0, 0.0);
   const double oxygen = 0.01275 * std::exp(-2239.1 / 293.15) * 24.0;
   const double nitrogen = 0.1068 * std::exp(-3352.0 / 293.15) * 9.0;

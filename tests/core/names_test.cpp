@@ -11,7 +11,7 @@
 namespace prostm {
 namespace {
 
-TEST(NearestName, IsTheOneThatIsSpelledMostAlike) {
+TEST(NearestName, HasTheMostSimilarSpelling) {
   const std::vector<std::string> commands = {"run", "plan", "capture", "am"};
   EXPECT_EQ(nearest_name("runn", commands), "run");
   EXPECT_EQ(nearest_name("plann", commands), "plan");
@@ -19,7 +19,7 @@ TEST(NearestName, IsTheOneThatIsSpelledMostAlike) {
   EXPECT_EQ(nearest_name("aim", commands), "am");
   EXPECT_EQ(nearest_name("cap", commands), "capture");
   EXPECT_FALSE(nearest_name("dance", commands));
-  // two letters that are both wrong are another name
+  // two wrong letters make it another name
   EXPECT_FALSE(nearest_name("xy", {"am"}));
   EXPECT_FALSE(nearest_name("foo", {"lap", "now"}));
   EXPECT_EQ(nearest_name("npw", {"lap", "now"}), "now");
@@ -40,13 +40,13 @@ TEST(Listed, SeparatesThreeAndMoreByCommas) {
             "a, b (default), and c");
 }
 
-TEST(LowerCase, ChangesNothingButAToZ) {
+TEST(LowerCase, ChangesOnlyAToZ) {
   EXPECT_EQ(lower_case("Leap.JSON @[`{"), "leap.json @[`{");
   EXPECT_EQ(lower_case("Ä Ω"), "Ä Ω");
   EXPECT_EQ(lower_case(""), "");
 }
 
-TEST(NumberText, HasTheFewestDigitsThatReadBack) {
+TEST(NumberText, HasTheFewestDigitsThatRoundTrip) {
   EXPECT_EQ(number_text(0.0086), "0.0086");
   EXPECT_EQ(number_text(0.1 + 0.2), "0.30000000000000004");
   EXPECT_EQ(number_text(-2.0), "-2");

@@ -7,7 +7,7 @@
 namespace prostm {
 namespace {
 
-TEST(ComparedText, HasEnoughDigitsToTellAValueFromItsBound) {
+TEST(ComparedText, HasEnoughDigitsToDistinguishAValueFromItsBound) {
   struct Case {
     double value, bound;
     int decimals;
@@ -23,7 +23,7 @@ TEST(ComparedText, HasEnoughDigitsToTellAValueFromItsBound) {
   }
 }
 
-TEST(ComparedText, TellsNumbersApartThatHardlyDiffer) {
+TEST(ComparedText, DistinguishesNearlyEqualNumbers) {
   for (double difference = 1e-1; difference > 1e-12; difference *= 0.1) {
     const auto [value, bound] = compared_text(1.0 + difference, 1.0, 0);
     EXPECT_NE(value, bound) << difference;

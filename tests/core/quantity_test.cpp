@@ -13,7 +13,7 @@ struct Trip {
   int stops = 0;
   std::int64_t bumps = 0;
   double fastest = 0.0;  // [m/s]
-  double fuel = 1.0;     // remaining share, 0..1
+  double fuel = 1.0;     // remaining fraction, 0..1
 };
 
 double bumps_per_km(const Trip& trip) {
@@ -38,7 +38,7 @@ std::span<const Quantity<Trip>> quantities<Trip>() {
 
 namespace {
 
-TEST(Quantity, GivesNumbersInSiAndWholeOnesAsSuch) {
+TEST(Quantity, GivesNumbersInSiAndIntegersAsSuch) {
   const Trip trip{2500.0, 3, 10, 30.0, 0.5};
   EXPECT_EQ(value_of(kTrip[0], trip), 2500.0);
   EXPECT_EQ(value_of(kTrip[1], trip), 3.0);
@@ -51,7 +51,7 @@ TEST(Quantity, GivesNumbersInSiAndWholeOnesAsSuch) {
   }
 }
 
-TEST(Quantity, MergesEachNumberInItsWay) {
+TEST(Quantity, MergesEachNumberByItsRule) {
   Trip sum{1000.0, 1, 2, 40.0, 0.9};
   merge({500.0, 2, 5, 30.0, 0.7}, sum);
   EXPECT_EQ(sum.length, 1500.0);

@@ -38,7 +38,7 @@ TEST(Random, SameSeedSameNumbers) {
   EXPECT_GT(different, 90);
 }
 
-TEST(Random, UniformIsTheUpperBits) {
+TEST(Random, UniformUsesTheUpperBits) {
   Random numbers(6), bits(6);
   for (int i = 0; i < 1000; ++i) {
     const double u = numbers.uniform();

@@ -11,7 +11,7 @@
 namespace prostm {
 namespace {
 
-/// Returns the message with which `check` refuses; empty if it accepts.
+/// Returns the message with which `check` rejects a value; empty if it accepts.
 std::string refusal(const std::function<void()>& check) {
   try {
     check();
@@ -21,7 +21,7 @@ std::string refusal(const std::function<void()>& check) {
   return "";
 }
 
-TEST(RequireBetween, TakesBothBoundsAndWhatLiesBetweenThem) {
+TEST(RequireBetween, AcceptsBothBoundsAndAllValuesBetween) {
   for (const double x : {0.1, 0.3, 0.6}) {
     EXPECT_EQ(refusal([&] { require_between("height", x, 0.1, 0.6, "m"); }), "");
   }
@@ -30,7 +30,7 @@ TEST(RequireBetween, TakesBothBoundsAndWhatLiesBetweenThem) {
   }
 }
 
-TEST(RequireBetween, NamesTheValueTheBoundsAndTheUnit) {
+TEST(RequireBetween, ReportsTheValueTheBoundsAndTheUnit) {
   EXPECT_EQ(refusal([] { require_between("height", 1.0, 0.1, 0.6, "m"); }),
             "height = 1 m must be between 0.1 and 0.6 m");
   EXPECT_EQ(refusal([] { require_between("gain", -0.5, 0.01, 100.0); }),
@@ -41,14 +41,14 @@ TEST(RequireBetween, NamesTheValueTheBoundsAndTheUnit) {
             "late = 0 blocks must be between 1 and 9 blocks");
 }
 
-TEST(RequireBetween, WritesAsManyDigitsAsTellTheValueFromTheBound) {
+TEST(RequireBetween, PrintsEnoughDigitsToDistinguishValueAndBound) {
   EXPECT_EQ(refusal([] { require_between("gain", std::nextafter(100.0, 200.0), 1e-6, 100.0); }),
             "gain = 100.00000000000001 must be between 1e-6 and 100");
   EXPECT_EQ(refusal([] { require_between("sigma", 0.0, 0.0001, 1e300); }),
             "sigma = 0 must be between 0.0001 and 1e300");
 }
 
-TEST(RequireBetween, RefusesWhatIsNotFiniteWithoutComparingIt) {
+TEST(RequireBetween, RejectsNonFiniteValuesWithoutComparing) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(refusal([] {
               require_between("speed", std::numeric_limits<double>::quiet_NaN(), 0.0, 1.0, "m/s");

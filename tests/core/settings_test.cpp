@@ -47,7 +47,7 @@ std::string refusal(const Call& call) {
   return "accepted";
 }
 
-TEST(Names, GoBothWays) {
+TEST(Names, ConvertBothWays) {
   for (const Colour colour : {Colour::Red, Colour::Green, Colour::Blue})
     EXPECT_EQ(from_name<Colour>(name_of(colour), "colour"), colour);
   EXPECT_FALSE(value_named<Colour>("violet").has_value());
@@ -55,12 +55,12 @@ TEST(Names, GoBothWays) {
             "colour \"violet\" is unknown: it must be red, green or blue");
 }
 
-TEST(Names, SayWhichMayHaveBeenMeant) {
+TEST(Names, SuggestTheNearest) {
   EXPECT_EQ(refusal([] { from_name<Colour>("gren", "colour"); }),
             "colour \"gren\" is unknown: it must be red, green or blue; did you mean \"green\"?");
 }
 
-TEST(Bounds, ReadAsPeopleWriteThem) {
+TEST(Bounds, AreFormattedForReaders) {
   EXPECT_EQ(bounds_text({"speed", "m/s", 0.1, 100}), "0.1 to 100 m/s");
   EXPECT_EQ(bounds_text({"tries", "", 0, 2147483647}), "0 to 2147483647");
   EXPECT_EQ(bounds_text({"pressure", "Pa", 1e-300, 1e300}), "1e-300 to 1e300 Pa");
@@ -69,7 +69,7 @@ TEST(Bounds, ReadAsPeopleWriteThem) {
   EXPECT_EQ(bounds_text({.name = "any"}), "");
 }
 
-TEST(SettingRows, AreTheListInOrderAsAFileHasIt) {
+TEST(SettingRows, FollowTheListInTheOrderOfTheFile) {
   Paint paint;
   paint.litres = 8.6e-3;
   const std::vector<SettingRow> rows =
@@ -87,7 +87,7 @@ TEST(SettingRows, AreTheListInOrderAsAFileHasIt) {
   EXPECT_STREQ(rows[0].setting.help, "in the pot");
 }
 
-TEST(Bounds, AreThoseOfTheList) {
+TEST(Bounds, AreCheckedForEverySetting) {
   Paint paint;
   EXPECT_EQ(refusal([&] { require_bounds(paint); }), "accepted");
   paint.litres = 11.0;
@@ -111,7 +111,7 @@ class Changer : public SettingsWriter {
   }
 };
 
-TEST(SettingsGroup, ReadsAndWritesWhatItIsOf) {
+TEST(SettingsGroup, ReadsAndWritesItsMembers) {
   Paint paint;
   Changer changer;
   const SettingsGroup group = group_of("paint", paint);

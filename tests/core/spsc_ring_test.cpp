@@ -15,12 +15,12 @@
 namespace prostm {
 namespace {
 
-TEST(SpscRing, RefusesCapacityZero) {
+TEST(SpscRing, RejectsCapacityZero) {
   EXPECT_THROW(SpscRing<int>(0), std::invalid_argument);
   EXPECT_EQ(SpscRing<int>(1).capacity(), 1u);
 }
 
-TEST(SpscRing, FullRefusesAndKeepsWhatItHolds) {
+TEST(SpscRing, RejectsValuesWhenFullAndKeepsTheOthers) {
   SpscRing<int> ring(2);
   EXPECT_TRUE(ring.push(1));
   EXPECT_TRUE(ring.push(2));
@@ -45,7 +45,7 @@ TEST(SpscRing, BehavesAsABoundedQueue) {
     SpscRing<int> ring(capacity);
     std::deque<int> model;
     const test::HeapGuard guard;
-    std::size_t own = 0;  // allocations of the model
+    std::size_t own = 0;  // allocations by the reference queue
     for (int i = 0; i < 5000; ++i) {
       if (random.below(2) == 0) {
         ASSERT_EQ(ring.push(i), model.size() < capacity);
@@ -65,8 +65,8 @@ TEST(SpscRing, BehavesAsABoundedQueue) {
   }
 }
 
-// Every value arrives whole, once and in order.
-TEST(SpscRing, OrderedAndWholeBetweenThreads) {
+// Every value arrives intact, once and in order.
+TEST(SpscRing, IsOrderedAndIntactBetweenThreads) {
   using Value = std::array<std::uint64_t, 8>;
   const std::uint64_t last = test::reduced(400000);
   SpscRing<Value> ring(10);

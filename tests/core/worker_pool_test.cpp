@@ -20,7 +20,7 @@ namespace {
 
 constexpr auto kLongerThanASpin = std::chrono::milliseconds(2);
 
-TEST(WorkerPool, RefusesLessThanOneThread) {
+TEST(WorkerPool, RejectsLessThanOneThread) {
   for (int threads : {0, -3}) {
     try {
       WorkerPool pool(threads);
@@ -46,7 +46,7 @@ TEST(WorkerPool, RunsEachIndexOnce) {
   }
 }
 
-TEST(WorkerPool, RunsNothingForNoIndices) {
+TEST(WorkerPool, RunsNothingForZeroIndices) {
   WorkerPool pool(2);
   int runs = 0;
   pool.run(0, [&](int) { ++runs; });
@@ -54,7 +54,7 @@ TEST(WorkerPool, RunsNothingForNoIndices) {
   EXPECT_EQ(runs, 0);
 }
 
-TEST(WorkerPool, TakesTheLargestRegion) {
+TEST(WorkerPool, AcceptsTheLargestRegion) {
   const int n = (1 << 20) - 1;
   std::vector<unsigned char> runs(static_cast<std::size_t>(n), 0);
   WorkerPool pool(3);
@@ -67,7 +67,7 @@ TEST(WorkerPool, TakesTheLargestRegion) {
 // Regions alternate between two functions, each of which writes the region's number into its own
 // cells, without atomics. If a worker that wakes late ran an index or the function of another
 // region, a cell would hold another number (and the thread sanitizer would see two writers). A lost
-// wake-up or index would hang. There are more threads than cores, so that workers lose their core
+// wake-up or index would hang. There are more threads than cores, so that workers are preempted
 // inside a region.
 TEST(WorkerPool, LateWorkersNeverTouchAnotherRegion) {
   WorkerPool pool(4);
@@ -86,8 +86,8 @@ TEST(WorkerPool, LateWorkersNeverTouchAnotherRegion) {
   EXPECT_EQ(wrong, 0u);
 }
 
-// After a pause the workers are asleep when a region comes. An index that waits for another thread
-// to take the next one hangs unless a sleeper is woken.
+// After a pause the workers are asleep when a region arrives. An index that waits for another
+// thread to take the next one hangs unless a sleeping worker is woken.
 TEST(WorkerPool, WakesSleepingWorkers) {
   WorkerPool pool(2);
   for (int round = 0; round < 20; ++round) {
@@ -101,7 +101,7 @@ TEST(WorkerPool, WakesSleepingWorkers) {
   }
 }
 
-TEST(WorkerPool, ResultDoesNotDependOnTheNumberOfThreads) {
+TEST(WorkerPool, TheResultDoesNotDependOnTheNumberOfThreads) {
   const auto compute = [](int threads) {
     WorkerPool pool(threads);
     std::vector<double> sums(100, 0.0);
@@ -117,7 +117,7 @@ TEST(WorkerPool, ResultDoesNotDependOnTheNumberOfThreads) {
   for (int threads : {2, 3, 5}) EXPECT_EQ(compute(threads), one);
 }
 
-TEST(WorkerPool, EndsWhileSpinningOrAsleep) {
+TEST(WorkerPool, StopsWhileSpinningOrAsleep) {
   for (int round = 0; round < 20; ++round) {
     WorkerPool unused(3);
   }
@@ -132,8 +132,8 @@ TEST(WorkerPool, EndsWhileSpinningOrAsleep) {
   }
 }
 
-// Counted on the caller and, from its first index on, on each worker.
-TEST(WorkerPool, AllocatesNothing) {
+// Counted on the calling thread and, from its first index on, on each worker.
+TEST(WorkerPool, DoesNotAllocate) {
   WorkerPool pool(3);
   std::atomic<std::size_t> by_workers{0};
   const test::HeapGuard guard;
@@ -148,7 +148,7 @@ TEST(WorkerPool, AllocatesNothing) {
   EXPECT_EQ(by_workers.load(), 0u);
 }
 
-TEST(WorkerPool, TwoPoolsAtOnce) {
+TEST(WorkerPool, TwoPoolsWorkAtOnce) {
   const auto regions = static_cast<int>(test::reduced(20000));
   const auto use = [&](std::uint64_t& sum) {
     WorkerPool pool(2);

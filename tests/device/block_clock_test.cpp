@@ -22,30 +22,30 @@ TEST(BlockClock, PunctualBlocksAreNeitherLateNorMissed) {
   }
 }
 
-TEST(BlockClock, LateWhenFilledAfterOnePeriod) {
+TEST(BlockClock, BlocksAreLateAfterOnePeriod) {
   BlockClock clock(kStart, 1ms, 8);
   EXPECT_TRUE(clock.fill(0, kStart + 1ms + 1us).late);
-  EXPECT_TRUE(clock.fill(1, kStart + 9ms).late);  // just in time to be played
+  EXPECT_TRUE(clock.fill(1, kStart + 9ms).late);  // late, but in time to be played
   EXPECT_EQ(clock.fill(2, kStart + 10ms).missed, 0);
 }
 
-TEST(BlockClock, DryQueueCountsPeriodsAndShiftsTheSchedule) {
+TEST(BlockClock, AnEmptyQueueCountsMissedPeriodsAndShiftsTheSchedule) {
   BlockClock clock(kStart, 1ms, 8);
   EXPECT_FALSE(clock.fill(0, kStart).late);
-  // block 1, due at 9 ms, comes at 20.5 ms: blocks are missed at 9, 10, … 20 ms
+  // block 1, due at 9 ms, arrives at 20.5 ms: blocks are missed at 9, 10, … 20 ms
   const auto filled = clock.fill(1, kStart + 20ms + 500us);
   EXPECT_TRUE(filled.late);
   EXPECT_EQ(filled.missed, 12);
   EXPECT_EQ(clock.play_time(1), kStart + 21ms);
-  EXPECT_EQ(clock.play_time(0), kStart + 8ms);  // its actual time
+  EXPECT_EQ(clock.play_time(0), kStart + 8ms);  // its actual play time
   EXPECT_EQ(clock.play_time(2), kStart + 22ms);
-  // the queue refills at once: block 8 is asked for at 20 ms, block 9 when block 1 plays
+  // the queue is refilled at once: block 8 is requested at 20 ms, block 9 when block 1 plays
   EXPECT_EQ(clock.ask_time(8), kStart + 20ms);
   EXPECT_EQ(clock.ask_time(9), kStart + 21ms);
   for (int k = 2; k <= 8; ++k) EXPECT_EQ(clock.fill(k, kStart + 20ms + 600us).missed, 0);
 }
 
-TEST(BlockClock, ManyShifts) {
+TEST(BlockClock, SurvivesManyShifts) {
   BlockClock clock(kStart, 1ms, 1);
   BlockClock::Time now = kStart;
   for (int k = 0; k < 500; ++k) {
@@ -56,8 +56,8 @@ TEST(BlockClock, ManyShifts) {
   }
 }
 
-/// Fills blocks in order, each `delay` after it is asked for, and checks that none is missed and
-/// that they play without a gap, whatever happens to the queue.
+/// Fills blocks in order, each `delay` after it is requested, and checks that none is missed and
+/// that they play without a gap while the queue changes its length.
 class Filler {
  public:
   explicit Filler(BlockClock& clock) : clock_(clock) {}
@@ -80,12 +80,12 @@ class Filler {
   BlockClock::Time now_ = kStart, played_;
 };
 
-TEST(BlockClock, TheQueueBeginsLongAndShortensWhileTheMachineIsCalm) {
+TEST(BlockClock, TheQueueStartsLongAndShortensOnACalmMachine) {
   BlockClock clock(kStart, 1ms, 3, 10);
   EXPECT_EQ(clock.queue_blocks(), 10);
   EXPECT_EQ(clock.play_time(0), kStart + 10ms);
   Filler filler(clock);
-  filler.fill_until(2, 8ms);  // slow blocks at the very beginning are not missed
+  filler.fill_until(2, 8ms);  // slow blocks right after the start are not missed
   EXPECT_EQ(clock.queue_blocks(), 10);
 
   BlockClock calm(kStart, 1ms, 3, 10);
@@ -102,7 +102,7 @@ TEST(BlockClock, TheQueueBeginsLongAndShortensWhileTheMachineIsCalm) {
 TEST(BlockClock, DelaysAreRememberedForAWhile) {
   BlockClock clock(kStart, 1ms, 2, 10);
   Filler filler(clock);
-  // delays of up to 3.2 ms need five blocks: one more than the four periods that they span
+  // delays of up to 3.2 ms need five blocks: one more than the four periods they extend over
   filler.fill(1, 3200us);
   const auto remembered = static_cast<std::int64_t>(BlockClock::kRemembered) * BlockClock::kCalm;
   filler.fill_until(remembered - 1, 100us);
@@ -111,36 +111,36 @@ TEST(BlockClock, DelaysAreRememberedForAWhile) {
   EXPECT_EQ(clock.queue_blocks(), 2);
 }
 
-TEST(BlockClock, AQueueThatIsNearlyDryGrowsWithoutAMiss) {
+TEST(BlockClock, ANearlyEmptyQueueGrowsWithoutAMiss) {
   BlockClock clock(kStart, 1ms, 3, 10);
   Filler filler(clock);
   filler.fill(8 * BlockClock::kCalm, 100us);
   ASSERT_EQ(clock.queue_blocks(), 3);
   filler.fill(1, 1300us);
-  EXPECT_EQ(clock.queue_blocks(), 3);  // 1.3 ms reach into the second period
+  EXPECT_EQ(clock.queue_blocks(), 3);  // 1.3 ms extend into the second period
   const std::int64_t k = filler.block();
   const BlockClock::Time asked = clock.ask_time(k + 1);
   filler.fill(1, 2500us);
   EXPECT_EQ(clock.queue_blocks(), 4);  // 2.5 ms into the third
-  // the next block plays as before, and is asked for one period earlier
+  // the next block plays as before, and is requested one period earlier
   EXPECT_EQ(clock.ask_time(k + 1), asked - 1ms);
-  // blocks that were due before the queue grew are asked for when it grew: they are not late
+  // blocks due before the queue grew are requested when it grows: they are not late
   const BlockClock::Time grown = clock.ask_time(k) + 2500us;
   for (int i = 1; i <= 3; ++i) EXPECT_FALSE(clock.fill(k + i, grown + 100us).late);
   EXPECT_EQ(clock.queue_blocks(), 4);
-  // no delay makes the queue longer than its limit
+  // no delay makes the queue exceed its limit
   for (int i = 4; i < 10; ++i) EXPECT_EQ(clock.fill(k + i, clock.play_time(k + i)).missed, 0);
   EXPECT_LE(clock.queue_blocks(), 10);
 }
 
-TEST(BlockClock, AQueueThatRanDryGrowsByWhatItLacked) {
+TEST(BlockClock, AQueueThatRanEmptyGrowsByTheShortfall) {
   BlockClock clock(kStart, 1ms, 3, 6);
   Filler filler(clock);
   filler.fill(4 * BlockClock::kCalm, 100us);
   ASSERT_EQ(clock.queue_blocks(), 3);
   const std::int64_t k = filler.block();
   const BlockClock::Time asked = clock.ask_time(k);
-  // a block due 3 ms later comes after 4.5 ms and plays after 5 ms
+  // a block due after 3 ms arrives after 4.5 ms and plays after 5 ms
   EXPECT_EQ(clock.fill(k, asked + 4500us).missed, 2);
   EXPECT_EQ(clock.queue_blocks(), 5);
   EXPECT_EQ(clock.play_time(k), asked + 5ms);
@@ -156,7 +156,7 @@ TEST(BlockClock, AQueueThatRanDryGrowsByWhatItLacked) {
   EXPECT_EQ(clock.play_time(k + 2), asked + 12ms);
 }
 
-TEST(BlockClock, RandomDelaysNeverBreakTheSchedule) {
+TEST(BlockClock, RandomDelaysKeepTheScheduleConsistent) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Random random(seed);
     BlockClock clock(kStart, 1ms, 1 + static_cast<int>(random.below(10)), 10);

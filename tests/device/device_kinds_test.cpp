@@ -8,13 +8,13 @@
 namespace prostm {
 namespace {
 
-TEST(DeviceNamed, TakesAnAddressOnlyWhereThereIsOne) {
+TEST(DeviceNamed, AcceptsAnAddressOnlyForKindsThatHaveOne) {
   EXPECT_STREQ(device_named("sim").kind->name, "sim");
   EXPECT_EQ(device_named("sim").address, "");
   EXPECT_THROW(device_named("sim://127.0.0.1"), std::invalid_argument);
 }
 
-TEST(DeviceKind, TellsOfAutd3WithoutLookingForIt) {
+TEST(DeviceKind, DescribesAutd3WithoutConnecting) {
   DeviceSetup setup{.array = autd3_array()};
   const DeviceKind& kind = *device_named("autd3://127.0.0.1:9").kind;
   EXPECT_STREQ(kind.array, "autd3");
@@ -34,7 +34,7 @@ TEST(DeviceKind, TellsOfAutd3WithoutLookingForIt) {
   EXPECT_THAT(finding.words, testing::HasSubstr("start AUTD3's simulator"));
 }
 
-TEST(Autd3Units, AreReadFromAFileOrRefused) {
+TEST(Autd3Units, AreReadFromAFileOrRejected) {
   const auto refusal = [](const std::string& units) {
     try {
       autd3_units_from_json(R"({"format": "prostm-autd3/1", "units": )" + units + "}", "u.json");
@@ -61,7 +61,7 @@ TEST(DeviceNamed, ListsTheDevicesForAnUnknownName) {
   }
 }
 
-TEST(DeviceKinds, SayHowTheyAreNamedWithAnAddress) {
+TEST(DeviceKinds, ShowTheirNamesWithAnAddress) {
   for (const DeviceKind& kind : device_kinds()) {
     const std::string form = form_of(kind);
     EXPECT_EQ(form.substr(0, form.find("://")), kind.name);
@@ -69,7 +69,7 @@ TEST(DeviceKinds, SayHowTheyAreNamedWithAnAddress) {
   }
 }
 
-TEST(DeviceNamed, SaysHowToGetAnUltraleapArrayWhereTheSdkIsMissing) {
+TEST(DeviceNamed, ExplainsHowToGetUltraleapSupportWithoutTheSdk) {
   for (const DeviceKind& kind : device_kinds()) {
     if (std::string(kind.name) != "ultraleap") continue;
     ASSERT_NE(kind.look, nullptr);

@@ -7,14 +7,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(LinkLoss, CountsEachLossOnceAndItsBlocks) {
+TEST(LinkLoss, CountsEachLossOnceWithItsBlocks) {
   LinkLoss loss;
   DeviceStats stats{.missed_blocks = 3};
   const LinkLoss::Time begin{};
   loss.add(begin, 0.01, stats);
-  EXPECT_EQ(stats.missed_blocks, 3) << "nothing is lost yet";
+  EXPECT_EQ(stats.missed_blocks, 3) << "the link is up";
   loss.lose(begin, stats);
-  loss.lose(begin + 100ms, stats);  // a try that failed
+  loss.lose(begin + 100ms, stats);  // a failed attempt to reconnect
   DeviceStats meanwhile = stats;
   loss.add(begin + 500ms, 0.01, meanwhile);
   EXPECT_EQ(meanwhile.lost_links, 1);

@@ -1,4 +1,4 @@
-// The limits of the system, in processes with limits of their own.
+// System limits, tested in processes with their own limits.
 
 #include "prostm/device/realtime_limits.hpp"
 
@@ -24,7 +24,7 @@ void drop_capabilities() {
   syscall(SYS_capset, &header, none);
 }
 
-/// Exit status of a child that runs `test`: 0 if all was as it should be.
+/// Exit status of a child process that runs `test`: 0 if the test holds.
 int in_child(const std::function<bool()>& test) {
   const pid_t child = fork();
   if (child == 0) _exit(test() ? 0 : 1);
@@ -40,14 +40,14 @@ void limit(__rlimit_resource which, rlim_t value) {
   setrlimit(which, &now);
 }
 
-TEST(RealtimeLimits, ALimitForbidsToLockTheMemory) {
+TEST(RealtimeLimits, ALimitPreventsLockingTheMemory) {
   EXPECT_EQ(in_child([] {
               drop_capabilities();
               limit(RLIMIT_MEMLOCK, 65536);
               limit(RLIMIT_RTPRIO, 0);
               const RealtimeLimits limits = realtime_limits();
               if (limits.memory || limits.priority || lock_memory()) return false;
-              // what is not locked can still be had
+              // ordinary allocations still work
               const std::vector<char> memory(std::size_t{64} << 20, 'x');
               return memory[12345] == 'x';
             }),
@@ -56,13 +56,13 @@ TEST(RealtimeLimits, ALimitForbidsToLockTheMemory) {
 
 TEST(RealtimeLimits, WithoutALimitTheMemoryIsLocked) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers let no program lock memory";
+  GTEST_SKIP() << "sanitizers prevent locking of memory";
 #endif
   EXPECT_EQ(in_child([] {
-              if (!realtime_limits().memory) return true;  // nothing to be seen here
+              if (!realtime_limits().memory) return true;  // this machine cannot show it
               if (!lock_memory()) return false;
               const std::vector<char> memory(std::size_t{1} << 20, 'x');
-              // a locked page cannot be let go
+              // a locked page cannot be discarded
               void* page =
                   mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
               return madvise(page, 4096, MADV_DONTNEED) != 0 && memory[12345] == 'x';
@@ -70,7 +70,7 @@ TEST(RealtimeLimits, WithoutALimitTheMemoryIsLocked) {
             0);
 }
 
-TEST(RealtimeLimits, TheSentencesSayWhatToDo) {
+TEST(RealtimeLimits, TheSentencesExplainWhatToDo) {
   EXPECT_NE(priority_sentence(false).find("rtprio 10"), std::string::npos);
   EXPECT_NE(memory_sentence(false).find("memlock unlimited"), std::string::npos);
   EXPECT_EQ(priority_sentence(true).find("limits.d"), std::string::npos);

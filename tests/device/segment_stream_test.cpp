@@ -7,7 +7,7 @@
 namespace prostm {
 namespace {
 
-/// A source whose samples carry their own number.
+/// A source whose samples carry their index.
 class Counted final : public SampleSource {
  public:
   int foci() const override { return 2; }
@@ -32,14 +32,14 @@ TEST(SegmentStream, PlaysAStreamBlockByBlockInSteps) {
   device.pull(25);
   device.pull(25);
   EXPECT_EQ(device.samples(), 50 * 40);
-  EXPECT_EQ(device.stats().blocks, 51) << "one is loaded ahead";
+  EXPECT_EQ(device.stats().blocks, 51) << "one block is loaded ahead";
   const std::vector<FocusSample> played = device.played()->read_back(0, 50 * 40);
   for (std::size_t i = 0; i < played.size(); ++i)
     ASSERT_EQ(played[i].p_D.x(), static_cast<float>(i / 2)) << i;
   EXPECT_EQ(device.play_time(400), 0.01);
 }
 
-TEST(SegmentStream, KeepsTimeAndPlaysEveryBlockInItsOrder) {
+TEST(SegmentStream, KeepsTimeAndPlaysEveryBlockInOrder) {
   SegmentStream device(array(true));
   Counted source;
   ASSERT_EQ(device.start(source), DeviceStatus::Running);
@@ -50,7 +50,7 @@ TEST(SegmentStream, KeepsTimeAndPlaysEveryBlockInItsOrder) {
   EXPECT_LT(device.ask_time(4000), device.play_time(4000));
   device.stop();
   EXPECT_EQ(device.status(), DeviceStatus::Idle);
-  // blocks are whole and in order
+  // blocks are complete and in order
   const std::int64_t n = dynamic_cast<const SimulatedArray&>(*device.played()).samples() / 40 * 40;
   const std::vector<FocusSample> back = device.played()->read_back(0, n);
   float block = 0.0F;
@@ -61,7 +61,7 @@ TEST(SegmentStream, KeepsTimeAndPlaysEveryBlockInItsOrder) {
   }
 }
 
-TEST(SegmentStream, RefusesWithASentence) {
+TEST(SegmentStream, RejectsInvalidCallsWithASentence) {
   Counted source;
   auto broken = array(false);
   SimulatedFaults faults;

@@ -23,7 +23,7 @@ namespace {
 using test::eventually;
 using Seconds = std::chrono::duration<double>;
 
-/// Samples that carry their own number.
+/// Samples that carry their index.
 class Counter final : public SampleSource {
  public:
   explicit Counter(int foci = 2) : foci_(foci) {}
@@ -56,7 +56,7 @@ SimulatedArray make(const Settings& settings) {
   return SimulatedArray(settings, usx_array(), Medium());
 }
 
-TEST(SimulatedArray, PullsByHandAndReadsBack) {
+TEST(SimulatedArray, AdvancesByPullAndReadsBack) {
   SimulatedArray array = make(by_hand());
   EXPECT_EQ(array.status(), DeviceStatus::Idle);
   EXPECT_EQ(array.info().block_samples, 40);
@@ -81,7 +81,7 @@ TEST(SimulatedArray, PullsByHandAndReadsBack) {
   EXPECT_TRUE(array.read_back(4000, 0).empty());
 }
 
-TEST(SimulatedArray, KeepsTheHistoryThatWasAskedFor) {
+TEST(SimulatedArray, KeepsTheRequestedHistory) {
   SimulatedArraySettings settings = by_hand();
   settings.history = 0.5;
   SimulatedArray array = make(settings);
@@ -97,7 +97,7 @@ TEST(SimulatedArray, KeepsTheHistoryThatWasAskedFor) {
   EXPECT_TRUE(counter.consecutive);
 }
 
-TEST(SimulatedArray, PullingAllocatesNothing) {
+TEST(SimulatedArray, PullDoesNotAllocate) {
   SimulatedArray array = make(by_hand());
   Counter counter;
   array.start(counter);
@@ -106,7 +106,7 @@ TEST(SimulatedArray, PullingAllocatesNothing) {
   EXPECT_EQ(guard.allocations(), 0u);
 }
 
-TEST(SimulatedArray, SegmentsRepeatAndTakeOverAtTheirEnd) {
+TEST(SimulatedArray, SegmentsRepeatAndSwitchAtTheirEnd) {
   SimulatedArray array = make(by_hand());
   const auto segment = [](std::size_t samples, float mark) {
     std::vector<FocusSample> out(samples * 2);
@@ -128,7 +128,7 @@ TEST(SimulatedArray, SegmentsRepeatAndTakeOverAtTheirEnd) {
   }
 }
 
-TEST(SimulatedArray, RefusesWithASentence) {
+TEST(SimulatedArray, RejectsInvalidCallsWithASentence) {
   SimulatedArray array = make(by_hand());
   Counter nine(9), two(2), other(2);
   EXPECT_EQ(array.start(nine), DeviceStatus::Refused);
@@ -164,7 +164,7 @@ TEST(SimulatedArray, RefusesWithASentence) {
   EXPECT_EQ(array.start(two), DeviceStatus::Running);
 }
 
-TEST(SimulatedArray, VanishesAndComesBack) {
+TEST(SimulatedArray, VanishesAndReturns) {
   for (const bool realtime : {false, true}) {
     SimulatedArraySettings settings;
     settings.realtime = realtime;
@@ -178,7 +178,7 @@ TEST(SimulatedArray, VanishesAndComesBack) {
     ASSERT_TRUE(eventually([&] { return array.status() == DeviceStatus::Vanished; }));
     EXPECT_EQ(array.status(), DeviceStatus::Vanished);
     EXPECT_EQ(array.problem(),
-              "The simulated array vanished after 20 blocks, as it was told to; start it again.");
+              "The simulated array vanished after 20 blocks, as requested; start it again.");
     EXPECT_EQ(array.stats().blocks, 20);
     array.set_faults({});
     Counter again;
@@ -195,14 +195,14 @@ TEST(SimulatedArray, KeepsRealTime) {
   Counter counter;
   const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(array.start(counter), DeviceStatus::Running);
-  EXPECT_EQ(array.stats().queue_blocks, 10) << "it begins with the longest queue";
+  EXPECT_EQ(array.stats().queue_blocks, 10) << "it starts with the longest queue";
   ASSERT_TRUE(eventually([&] { return array.stats().blocks >= 200; }));
   const auto now = [] {
     return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
   };
   const double elapsed = Seconds(std::chrono::steady_clock::now() - start).count();
-  EXPECT_GE(elapsed, 0.199);  // never ahead of time: block 199 is asked for at 199 ms
-  // played samples lie in the past, and later ones in the future; a late block may move both
+  EXPECT_GE(elapsed, 0.199);  // never early: block 199 is requested at 199 ms
+  // played samples lie in the past, and later ones in the future; a late block may shift both
   // between two calls
   EXPECT_TRUE(eventually([&] {
     const double played = array.play_time(array.samples() - 1);
@@ -215,7 +215,7 @@ TEST(SimulatedArray, KeepsRealTime) {
   array.stop();
   const std::int64_t played = array.stats().blocks * 40;
   EXPECT_LE(array.samples(), played);
-  ASSERT_TRUE(eventually([&] { return array.samples() == played; }));  // the queued blocks play on
+  ASSERT_TRUE(eventually([&] { return array.samples() == played; }));  // the queue is played out
   const auto samples = array.read_back(played - 40, 40);
   for (std::size_t i = 0; i < 40; ++i) {
     EXPECT_EQ(samples[2 * i].p_D.x(), static_cast<float>(played - 40) + static_cast<float>(i));
@@ -247,7 +247,7 @@ TEST(SimulatedArray, DelayMakesBlocksLateAndThenMissed) {
   EXPECT_TRUE(again.consecutive);  // no sample is skipped
 }
 
-TEST(SimulatedArray, StreamsPlansThatComeMeanwhile) {
+TEST(SimulatedArray, StreamsPlansThatArriveInTheMeantime) {
   SimulatedArray array = make(SimulatedArraySettings());
   EmitSettings settings;
   settings.full_scale_pressure = 1.0;
@@ -295,7 +295,7 @@ std::vector<double> reached(const SimulatedArraySettings& settings,
   return array.pressure(799, 1, points);
 }
 
-TEST(SimulatedArray, HalfTheFocusGivesHalfTheRadiationPressureThroughTheModulation) {
+TEST(SimulatedArray, HalfTheTargetGivesHalfTheRadiationPressureOfAModulatedFocus) {
   EmitSettings settings;
   settings.foci = 1;
   settings.full_scale_pressure = 10.0;
@@ -324,7 +324,7 @@ TEST(SimulatedArray, HalfTheFocusGivesHalfTheRadiationPressureThroughTheModulati
   EXPECT_NEAR(full.first / full.second, 0.5, 1e-4);  // sine-magnitude modulation
 }
 
-TEST(SimulatedArray, AtAZeroOfTheModulationTransducersStillRingAsTheirMemorySays) {
+TEST(SimulatedArray, AtZerosOfTheModulationTransducersRingAsTheirMemoryPredicts) {
   const TransducerSettings transducer;
   const double tau_turns = time_constant(transducer) * 200.0;
   for (const Waveform waveform : {Waveform::SineMagnitude, Waveform::RaisedCosine}) {
@@ -356,7 +356,7 @@ TEST(SimulatedArray, HalfTheTargetGivesHalfTheRadiationPressure) {
   }
 }
 
-TEST(SimulatedArray, OneFocusAtFullDriveHasAllOfTheArray) {
+TEST(SimulatedArray, OneFocusAtFullDriveUsesTheWholeArray) {
   const Vec3 focus(0.0, 0.0, 0.2);
   const TransducerArray usx = usx_array();
   double sum = 0.0;
@@ -365,17 +365,17 @@ TEST(SimulatedArray, OneFocusAtFullDriveHasAllOfTheArray) {
   EXPECT_NEAR(reached(by_hand(), {sample})[0], sum, 1e-4 * sum);
 }
 
-TEST(SimulatedArray, IntensityIsTheSamePressureEverywhereWithinTheBound) {
+TEST(SimulatedArray, AnIntensityGivesTheSamePressureEverywhereWithinTheBound) {
   const auto pressure_at = [&](const Vec3& p) {
     return reached(by_hand(), {{p.cast<float>(), 0.4F}})[0];
   };
   const double here = pressure_at({0.0, 0.0, 0.2});
   EXPECT_NEAR(pressure_at({0.05, -0.04, 0.25}), here, 1e-3 * here);
   EXPECT_NEAR(pressure_at({0.0, 0.02, 0.12}), here, 1e-3 * here);
-  EXPECT_LT(pressure_at({0.0, 0.0, 0.8}), 0.9 * here);  // the array makes a quarter of it there
+  EXPECT_LT(pressure_at({0.0, 0.0, 0.8}), 0.9 * here);  // the array reaches a quarter of it there
 }
 
-TEST(SimulatedArray, SeveralFociKeepTheirShares) {
+TEST(SimulatedArray, SeveralFociKeepTheirRatios) {
   std::vector<FocusSample> foci(4);
   for (std::size_t f = 0; f < 4; ++f) {
     foci[f].p_D = Eigen::Vector3f(0.03F * static_cast<float>(f) - 0.045F, 0.0F, 0.2F);
@@ -394,8 +394,8 @@ TEST(SimulatedArray, SeveralFociKeepTheirShares) {
   EXPECT_GT(power, 0.75);  // bound by (A4)
 }
 
-TEST(SimulatedArray, TransducersFollowTheirDrivesUnlessToldOtherwise) {
-  // silence, then a focal point: after a time constant it has reached 1 − 1/e
+TEST(SimulatedArray, TransducersLagUnlessMemoryless) {
+  // silence, then a focal point: after one time constant it has reached 1 − 1/e
   std::vector<FocusSample> step(800, {Eigen::Vector3f(0.0F, 0.0F, 0.2F), 0.0F});
   for (std::size_t i = 400; i < 800; ++i) step[i].intensity = 1.0F;
   for (const bool memoryless : {false, true}) {
@@ -412,7 +412,7 @@ TEST(SimulatedArray, TransducersFollowTheirDrivesUnlessToldOtherwise) {
   }
 }
 
-TEST(SimulatedArray, OutputIsThatOfTheWholeStream) {
+TEST(SimulatedArray, AnyRangeOfTheOutputIsTheSame) {
   SimulatedArray array = make(by_hand());
   std::vector<FocusSample> circle;
   for (int i = 0; i < 800; ++i) {

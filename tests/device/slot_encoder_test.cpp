@@ -21,7 +21,7 @@ namespace {
 constexpr double kTurn = 2.0 * std::numbers::pi;
 const Medium kAir;
 
-/// Position that a word tells, in the unit's own frame [m].
+/// Position encoded in a word, in the unit's own frame [m].
 Vec3 place_of(SlotWord word) {
   Vec3 p;
   for (int axis = 0; axis < 3; ++axis) {
@@ -32,7 +32,7 @@ Vec3 place_of(SlotWord word) {
   return p;
 }
 
-/// Drives of a unit's transducers as its firmware computes them from words, in floating point.
+/// Drives of a unit's transducers as its firmware computes them from words, but in floating point.
 std::vector<std::complex<double>> drives_of(std::span<const SlotWord> words, const Medium& medium) {
   const TransducerArray unit = autd3_units(std::array{Pose(Pose::Identity())});
   const double c = std::round(medium.speed_of_sound() * 64.0) / 64.0;
@@ -91,8 +91,8 @@ TEST(SlotEncoder, GivesASingleFocalPointItsIntensity) {
   }
 }
 
-/// Follows moving focal points of unequal intensities, the least 0.2 of the largest, through the
-/// transducers' memory. Adds the relative errors of their shares at the ends of samples to
+/// Follows moving focal points of unequal intensities, the smallest 0.2 of the largest, through the
+/// transducers' memory. Appends the relative errors of their ratios at the ends of samples to
 /// `errors`.
 void follow(int foci, int divider, std::uint64_t seed, std::vector<double>& errors) {
   const fields::MovingFoci moving(seed, foci, 0.03);
@@ -126,9 +126,9 @@ void follow(int foci, int divider, std::uint64_t seed, std::vector<double>& erro
   }
 }
 
-// None of these paths' is off; on others a few in 10 000 are off, two focal points within a
-// wavelength mostly.
-TEST(SlotEncoder, ReachesUnequalIntensitiesAfterTheTransducersMemory) {
+// On these paths none is off; on others a few in 10 000 are, mostly with two focal points within a
+// wavelength of each other.
+TEST(SlotEncoder, ReachesUnequalIntensitiesDespiteTheTransducersMemory) {
   for (const int divider : {4, 6, 8}) {
     for (const int foci : {2, 3, 4}) {
       std::vector<double> shares;
@@ -145,8 +145,8 @@ TEST(SlotEncoder, ReachesUnequalIntensitiesAfterTheTransducersMemory) {
   }
 }
 
-TEST(SlotEncoder, TellsThePhasesOfItsSolver) {
-  // the solver that it uses, without any rounding
+TEST(SlotEncoder, EncodesThePhasesOfItsSolver) {
+  // the solver that it uses, without rounding
   constexpr int kFoci = 4;
   const TransducerArray array = autd3_array();
   LiveFocusSettings settings;
@@ -172,13 +172,13 @@ TEST(SlotEncoder, TellsThePhasesOfItsSolver) {
     }
     encoder.encode(sample, words);
     solver.solve(foci);
-    // the units take the first slot's phase as 0, half of how far the first two are apart
+    // the units take the first slot's phase as 0: half the phase difference of the first two slots
     const double reference = -std::round(0.5 * static_cast<double>(words[1] >> 54 & 0xFF));
     solver.play(std::polar(1.0F, static_cast<float>(kTurn / 256.0 * (reference - before))));
     before = reference;
     const auto told = drives_of(words, kAir);
     std::vector<std::complex<double>> wanted;
-    std::complex<double> turn = 0.0;  // the phase that all have in common is free
+    std::complex<double> turn = 0.0;  // the common phase is arbitrary
     for (std::size_t n = 0; n < told.size(); ++n) {
       std::complex<double> sum = 0.0;
       for (std::size_t f = 0; f < kFoci; ++f) {
@@ -195,8 +195,8 @@ TEST(SlotEncoder, TellsThePhasesOfItsSolver) {
     }
   }
   std::sort(errors.begin(), errors.end());
-  // where the sum is a tenth of the slots' number, rounding places to 0.025 mm and phases to
-  // 1/256 turn alone is an error of 1.05 (standard deviation); elsewhere it is less
+  // where the sum is a tenth of the number of slots, rounding positions to 0.025 mm and phases to
+  // 1/256 turn alone causes an error of 1.05 (standard deviation); elsewhere it is smaller
   const auto above = errors.end() - std::upper_bound(errors.begin(), errors.end(), 2.0);
   EXPECT_LT(static_cast<double>(above), 1e-3 * static_cast<double>(errors.size()));
   std::printf(
@@ -205,7 +205,7 @@ TEST(SlotEncoder, TellsThePhasesOfItsSolver) {
       errors.size());
 }
 
-TEST(SlotEncoder, RoundsPlacesToAtMostHalfAStepInEveryUnit) {
+TEST(SlotEncoder, RoundsPositionsToAtMostHalfAStepInEveryUnit) {
   const Pose beside = Pose(Eigen::Translation3d(0.2, 0.0, 0.01)) *
                       Eigen::AngleAxisd(-0.4, Vec3::UnitY()) * autd3_middle();
   const std::array units{autd3_middle(), beside};
@@ -229,7 +229,7 @@ TEST(SlotEncoder, RoundsPlacesToAtMostHalfAStepInEveryUnit) {
   }
 }
 
-TEST(SlotEncoder, IsSilentWhereNumbersAreNotSound) {
+TEST(SlotEncoder, IsSilentForInvalidNumbers) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const FocusSample good = focus_at({0.0, 0.0, 0.2}, 0.5);
   const std::array bad = {FocusSample{{nan, 0.0F, 0.2F}, 0.5F},
@@ -266,7 +266,7 @@ TEST(SlotEncoder, KeepsPhasesWhileTheFirstFocalPointIsSilent) {
   }
 }
 
-TEST(SlotEncoder, AllocatesNothing) {
+TEST(SlotEncoder, DoesNotAllocate) {
   SlotEncoder encoder(std::array{autd3_middle()}, kAir, {.foci = 4});
   const fields::MovingFoci moving(1, 4, 0.03);
   std::array<SlotWord, 8> words{};
@@ -280,7 +280,7 @@ TEST(SlotEncoder, AllocatesNothing) {
   EXPECT_EQ(guard.allocations(), 0U);
 }
 
-TEST(SlotEncoder, SaysHowManyFocalPointsFit) {
+TEST(SlotEncoder, ReportsHowManyFocalPointsFit) {
   const std::array unit{autd3_middle()};
   EXPECT_EQ(SlotEncoder(unit, kAir, {.foci = 4}).slots(), 8);
   EXPECT_EQ(SlotEncoder(unit, kAir, {.foci = 8, .own_intensities = false}).slots(), 8);

@@ -1,4 +1,4 @@
-// The figures of the self-test, as a simulated array plays them.
+// The self-test's figures, as played by a simulated array.
 
 #include "prostm/device/test_pattern.hpp"
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kRate = 40e3, kHeight = 0.15;
 
-/// Two AUTD3s beside each other.
+/// Two AUTD3 units side by side.
 TransducerArray two_units() {
   Pose left = Pose::Identity(), right = Pose::Identity();
   left.translation().x() = -0.1;
@@ -29,7 +29,7 @@ TransducerArray two_units() {
   return join(units);
 }
 
-/// Plays figures on a simulated array that keeps no time.
+/// Plays figures on a simulated array without a clock.
 struct Played {
   explicit Played(std::vector<TestFigure> figures, double rate = kRate, double level = 1.0)
       : pattern(std::move(figures), rate, level) {
@@ -41,7 +41,7 @@ struct Played {
     chain = make_sample_chain(pattern, device->info(), {});
     device->start(*chain);
   }
-  /// Pulls until the pattern is done, and returns the samples since.
+  /// Pulls until the pattern is finished, and returns the samples played meanwhile.
   std::vector<FocusSample> until_done() {
     const std::int64_t first = device->samples();
     while (!pattern.done()) device->pull(1);
@@ -58,7 +58,7 @@ struct Played {
   std::unique_ptr<SampleChain> chain;
 };
 
-/// Checks the steps from sample to sample: of places while it sounds, and of intensities.
+/// Checks the steps between samples: of positions while the output is on, and of intensities.
 void expect_steps(const std::vector<FocusSample>& samples, double rate) {
   const double step = kMaxFocusSpeed / rate * (1.0 + 1e-4), change = 0.025 * (1.0 + 1e-4);
   for (std::size_t i = 1; i < samples.size(); ++i) {
@@ -69,13 +69,13 @@ void expect_steps(const std::vector<FocusSample>& samples, double rate) {
   }
 }
 
-TEST(TestPattern, IsSilentUntilItIsToldToPlay) {
+TEST(TestPattern, IsSilentUntilAFigureStarts) {
   Played played(test_figures(usx_array(), kRate, kHeight, 1.0));
   EXPECT_TRUE(played.pattern.done());
   for (const FocusSample& sample : played.pull(100)) ASSERT_EQ(sample.intensity, 0.0F);
 }
 
-TEST(TestPattern, PlaysEachFigureWhereItSaysInSmallSteps) {
+TEST(TestPattern, PlaysEachFigureAtItsPlaceInSmallSteps) {
   const auto figures = test_figures(two_units(), kRate, kHeight, 1.0);
   ASSERT_EQ(figures.size(), 4U);
   Played played(figures);
@@ -97,7 +97,7 @@ TEST(TestPattern, PlaysEachFigureWhereItSaysInSmallSteps) {
   EXPECT_EQ(played.chain->limited(), 0);
 }
 
-TEST(TestPattern, BeginsGently) {
+TEST(TestPattern, FadesIn) {
   Played played(test_figures(usx_array(), kRate, kHeight, 4.0), kRate, 0.5);
   played.pattern.play(1);
   const std::vector<FocusSample> samples = played.until_done();
@@ -105,7 +105,7 @@ TEST(TestPattern, BeginsGently) {
   EXPECT_FLOAT_EQ(samples[100'000].intensity, 0.5F);
 }
 
-TEST(TestPattern, OverEachUnitItsOwnFigureStands) {
+TEST(TestPattern, PlacesAFigureOverEachUnit) {
   const TransducerArray array = two_units();
   const auto figures = test_figures(array, kRate, kHeight, 1.0);
   EXPECT_LT((figures[2].centre - Vec3(-0.1, 0.0, kHeight)).norm(), 2e-3);
@@ -113,7 +113,7 @@ TEST(TestPattern, OverEachUnitItsOwnFigureStands) {
   EXPECT_EQ(test_figures(usx_array(), kRate, kHeight, 1.0).size(), 2U);
 }
 
-TEST(TestPattern, IsSilentWithinTwoMillisecondsAndNeverClicks) {
+TEST(TestPattern, IsSilentWithinTwoMillisecondsWithoutClicks) {
   Random random(7);
   Played played(test_figures(two_units(), kRate, kHeight, 1.0));
   std::vector<FocusSample> all;
@@ -132,7 +132,7 @@ TEST(TestPattern, IsSilentWithinTwoMillisecondsAndNeverClicks) {
   EXPECT_EQ(played.chain->limited(), 0);
 }
 
-TEST(TestPattern, KeepsItsBoundsAtEveryRate) {
+TEST(TestPattern, StaysWithinItsBoundsAtEveryRate) {
   for (const double rate : {4e3, 10e3, 20e3, 40e3, 100e3}) {
     const auto figures = test_figures(usx_array(), rate, kHeight, 0.5);
     Played played(figures, rate);
@@ -144,7 +144,7 @@ TEST(TestPattern, KeepsItsBoundsAtEveryRate) {
   }
 }
 
-TEST(TestPattern, AllocatesNothingWhileItPlays) {
+TEST(TestPattern, DoesNotAllocateWhilePlaying) {
   TestPattern pattern(test_figures(usx_array(), kRate, kHeight, 1.0), kRate, 1.0);
   std::vector<FocusSample> block(400);
   const test::HeapGuard guard;
@@ -156,7 +156,7 @@ TEST(TestPattern, AllocatesNothingWhileItPlays) {
   EXPECT_TRUE(pattern.done());
 }
 
-TEST(TestPattern, RefusesFiguresThatNoSkinShouldMeet) {
+TEST(TestPattern, RejectsUnsafeFigures) {
   const auto refused = [](auto change) {
     TestFigure figure{"a circle", TestShape::Circle, Vec3(0, 0, 0.15), 0.02, 60.0, 0.0, 1.0};
     change(figure);

@@ -1,4 +1,4 @@
-"""The documents as a reader sees them: their blocks of code."""
+"""The documents as rendered: their code blocks."""
 
 from itertools import zip_longest
 from pathlib import Path
@@ -9,7 +9,7 @@ PAGES = sorted([*ROOT.glob("*.md"), ROOT / "data/README.md", *ROOT.glob("docs/**
 
 
 class Block(NamedTuple):
-    """A fenced block: the language after its fence, its text, and the line that the text begins on."""
+    """A fenced block: the language after its fence, its text, and the line on which the text begins."""
 
     language: str
     text: str
@@ -36,8 +36,8 @@ def blocks_of(page):
 
 
 def python_of(page):
-    """(code, what the page says that it prints) of each block of Python: the `text` block that comes next shows what
-    the code prints; code without such a block prints nothing."""
+    """(code, documented output) of each Python block: the `text` block that follows shows the code's output; code
+    without such a block prints nothing."""
     blocks = blocks_of(page)
     return [(block.text, after.text if after and after.language == "text" else "")
             for block, after in zip_longest(blocks, blocks[1:]) if block.language == "python"]

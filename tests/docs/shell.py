@@ -1,4 +1,4 @@
-"""Types the commands of a document, as it has them, and compares what the document says they print."""
+"""Runs the commands of a document as written, and compares their output with the documented output."""
 
 import os
 import re
@@ -9,16 +9,16 @@ from pathlib import Path
 from pages import ROOT
 
 PROSTM = Path(os.environ["PROSTM"])
-# statuses other than 0 that a command may end with here, where no tracker is and any machine will do
+# non-zero statuses with which a command may end here, without a tracker and on any machine
 STATUSES = {"leap://": {3}, "openxr": {3}, "prostm check": {0, 1}, "prostm soak": {0, 1}}
-# commands that are not typed here: other tests run them, they take long, or they need another machine
+# commands that are not run here: other tests run them, they take long, or they need another machine
 ELSEWHERE = ("cmake ", "g++ ", "ssh ", "tools/", "PKG_CONFIG_PATH=", "prostm report")
-SECONDS = 3  # of a run that keeps the clock's time: after 1.5 s it says that a tracker is missing
+SECONDS = 3  # of a real-time run: after 1.5 s it reports a missing tracker
 FRAMES = 10  # of a recording of fields
 
 
 def split_commands(text):
-    """One for each command: lines that end in a backslash and here-documents are joined."""
+    """Splits text into commands: lines that end in a backslash and here-documents are joined."""
     command, end = "", None
     for line in text.splitlines():
         command += line + "\n"
@@ -32,8 +32,8 @@ def split_commands(text):
 
 
 def shortened(command):
-    """The same for 3 s where it would keep the clock's time for longer, with few fields where it would record or plan
-    many, and with one trial and nobody where it would lead a participant."""
+    """The same command for 3 s if it would run longer in real time, with few fields if it would record or plan many,
+    and with one trial and no participant if it would guide one."""
     words = re.sub(r"--frames \S+", f"--frames {FRAMES}", command.split("  #")[0])
     if words.startswith("prostm soak"):
         return re.sub(r" --minutes \S+", "", words) + f" --minutes {SECONDS / 60}"
@@ -50,7 +50,7 @@ def statuses_of(command):
 
 
 def check_run(command):
-    """That ./run has the command, and the benchmark or comparison that it names."""
+    """Checks that ./run has the command, and the benchmark or comparison that it names."""
     words = shlex.split(command, comments=True)[1:]
     usage = subprocess.run([ROOT / "run", "--help"], capture_output=True, text=True, check=True).stdout
     assert re.search(rf"^  {words[0]}\b", usage, re.MULTILINE), f"./run has no {words[0]}"
@@ -65,7 +65,7 @@ def check_run(command):
 
 
 def type_command(command, folder):
-    """Runs it with bash in `folder`. @return what it printed, both streams together."""
+    """Runs a command with bash in `folder`. @return its output, both streams together."""
     if command.startswith("./run"):
         check_run(command)
         return None
@@ -94,15 +94,15 @@ def same_number(said, printed):
 
 
 def same_line(said, printed):
-    """Whether a line is what the document says: … stands for anything, numbers may differ by a tenth (those with a
-    point by one more in the last place), and gaps by their width."""
+    """Whether a line matches the documented one: … stands for anything, numbers may differ by a tenth (those with a
+    point by one more in the last place), and gaps in width."""
     parts = re.split(rf"(…|{NUMBER.pattern})", said.rstrip())
     found = re.fullmatch("".join(map(pattern_of, parts)), printed.rstrip())
     return bool(found) and all(map(same_number, NUMBER.findall(said), found.groups()))
 
 
 def check_output(said, printed):
-    """That the document shows all that was printed, line by line; a line of … alone stands for any lines."""
+    """Checks that the document shows the whole output, line by line; a line of … alone stands for any lines."""
     lines = iter(printed.strip("\n").splitlines())
     skipping = False
     for line in said.strip("\n").splitlines():
@@ -121,7 +121,7 @@ def check_output(said, printed):
 
 
 def commands_of(block):
-    """(command, what the document says that it prints) of a block; a block of `sh` says nothing: None."""
+    """(command, documented output) of a block; for a block of `sh` the output is None."""
     if block.language == "sh":
         yield from ((command, None) for command in split_commands(block.text))
     elif block.language == "console":

@@ -1,14 +1,14 @@
-"""Types the examples of the program's help, as a newcomer does who copies them."""
+"""Runs the examples in the program's help, like a newcomer who copies them."""
 
 import shell
 from pages import ROOT
 
-# each finds the files that those before it wrote; first-run.md types prostm check, which takes long
+# each uses the files written by those before it; first-run.md runs prostm check, which takes long
 COMMANDS = ["run", "plan", "field", "solve", "capture", "bench", "settings", "devices", "selftest", "soak",
             "study analyse", "study run", "study simulate", "help"]
 
 
-def test_the_examples_of_help_run_in_the_projects_folder(tmp_path):
+def test_the_examples_of_help_work_in_the_projects_folder(tmp_path):
     (tmp_path / "data").symlink_to(ROOT / "data")
     listed = shell.type_command("prostm --help", tmp_path)
     for command in COMMANDS:

@@ -1,4 +1,4 @@
-"""Types every command of the documents and runs their Python, compares what the documents say these print, and reads the
+"""Runs all commands and Python code of the documents, compares their output with the documented output, and reads the
 documents' files. tools/check_links.py follows their links."""
 
 import json
@@ -11,7 +11,7 @@ import shell
 from pages import PAGES, ROOT, blocks_of, name_of, python_of
 
 LANGUAGES = {"sh", "console", "python", "json", "toml", "cmake", "text"}
-# the command that reads a file of each format
+# the command that reads each file format
 READERS = {
     "prostm-field/1": "prostm plan FILE",
     "prostm-plan/1": "prostm field FILE",
@@ -29,7 +29,7 @@ def page(request):
 
 @pytest.fixture(scope="module")
 def folder(page, tmp_path_factory):
-    """A folder that looks like the project's, so that what a page's commands write is thrown away."""
+    """A folder that looks like the project's, so that files written by a page's commands are discarded."""
     folder = tmp_path_factory.mktemp(page.stem)
     for name in ("data", "examples", "tools"):
         (folder / name).symlink_to(ROOT / name)
@@ -38,8 +38,8 @@ def folder(page, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def typed(page, folder):
-    """(command, what the page says that it prints, what it printed) of each command of the page, typed in `folder`;
-    the page's Python finds the files that they wrote."""
+    """(command, documented output, actual output) of each command of the page, run in `folder`; the page's Python uses
+    the files that they wrote."""
     return [(command, said, shell.type_command(command, folder))
             for block in blocks_of(page) for command, said in shell.commands_of(block)]
 
@@ -49,14 +49,14 @@ def test_blocks_name_their_language(page):
     assert not wrong, f"a block is one of {sorted(LANGUAGES)}, not {wrong}"
 
 
-def test_commands_print_what_the_page_says(typed):
+def test_commands_print_the_documented_output(typed):
     for command, said, printed in typed:
         if said is not None:
             assert printed is not None, f"nothing types this command, so its block is one of sh: {command}"
             shell.check_output(said, printed)
 
 
-def test_python_prints_what_the_page_says(page, folder, typed):
+def test_python_prints_the_documented_output(page, folder, typed):
     blocks = python_of(page)
     if not blocks:
         pytest.skip("the page has no Python")

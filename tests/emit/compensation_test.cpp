@@ -11,7 +11,7 @@
 namespace prostm {
 namespace {
 
-/// Returns 100 × 100 mm of skin in 5 mm cells that rises along x with this slope.
+/// Returns 100 × 100 mm of skin in 5 mm cells with this slope along x.
 TargetFrame slope(double rise) {
   TargetFrame frame;
   frame.patches.emplace_back();
@@ -41,7 +41,7 @@ LiftedPlan lifted(const TargetFrame& frame) {
   return out;
 }
 
-TEST(SkinNormal, FollowsTheSlopeAndIsLevelWhereThereIsNone) {
+TEST(SkinNormal, FollowsTheSlopeAndIsLevelForIsolatedSkin) {
   TargetFrame frame = slope(std::tan(0.5));
   TargetField& field = frame.patches[0];
   const Vec3 expected(std::sin(0.5), 0.0, -std::cos(0.5));
@@ -49,13 +49,13 @@ TEST(SkinNormal, FollowsTheSlopeAndIsLevelWhereThereIsNone) {
   EXPECT_LT((skin_normal(field, 0, 20) - expected).norm(), 1e-6);
   std::fill(field.skin.begin(), field.skin.end(), std::uint8_t{0});
   EXPECT_LT((skin_normal(field, 10, 10) + Vec3::UnitZ()).norm(), 1e-12);
-  field.skin[field.index(10, 10)] = 1;  // alone
+  field.skin[field.index(10, 10)] = 1;  // isolated
   EXPECT_LT((skin_normal(field, 10, 10) + Vec3::UnitZ()).norm(), 1e-6);
-  for (int row = 0; row < 21; ++row) field.skin[field.index(row, 10)] = 1;  // across the slope
+  for (int row = 0; row < 21; ++row) field.skin[field.index(row, 10)] = 1;  // a strip across it
   EXPECT_LT((skin_normal(field, 10, 10) + Vec3::UnitZ()).norm(), 1e-6);
 }
 
-TEST(TiltFactor, UndoesTheSquaredCosineUpToItsBound) {
+TEST(TiltFactor, InvertsTheSquaredCosineUpToItsBound) {
   const Vec3 p(0.03, -0.02, 0.2);
   const Vec3 across = p.unitOrthogonal();
   for (const double beta : {0.0, 0.2, 0.6, 0.8, 1.2, 1.57, 2.0, 3.1}) {
@@ -69,7 +69,7 @@ TEST(TiltFactor, UndoesTheSquaredCosineUpToItsBound) {
   }
 }
 
-TEST(CompensateTilt, RaisesPressureOnASlopeAndAllocatesNothing) {
+TEST(CompensateTilt, RaisesPressureOnASlopeWithoutAllocation) {
   const TargetFrame frame = slope(std::tan(0.6));
   const LiftedPlan before = lifted(frame);
   LiftedPlan after = before;

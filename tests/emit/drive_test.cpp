@@ -11,7 +11,7 @@
 namespace prostm {
 namespace {
 
-TEST(DriveIntensity, SquareGivesThePressureBack) {
+TEST(DriveIntensity, ItsSquareIsThePressure) {
   bool saturated = true;
   for (double pressure = 0.05; pressure <= 5.0; pressure += 0.01) {
     const double intensity = drive_intensity(pressure, 5.0, 0.01, saturated);
@@ -20,7 +20,7 @@ TEST(DriveIntensity, SquareGivesThePressureBack) {
   }
 }
 
-TEST(DriveIntensity, ClipsCountsAndFallsSilent) {
+TEST(DriveIntensity, ClipsCountsAndFallsToZero) {
   bool saturated = false;
   EXPECT_EQ(drive_intensity(5.1, 5.0, 0.01, saturated), 1.0);
   EXPECT_TRUE(saturated);
@@ -35,7 +35,7 @@ TEST(DriveIntensity, ClipsCountsAndFallsSilent) {
   EXPECT_FALSE(saturated);
 }
 
-TEST(LimitDrives, HoldsPowerAndSlewForAnyWish) {
+TEST(LimitDrives, KeepsPowerAndSlewForAnyRequest) {
   Random random(7);
   constexpr double kRise = 1.0 / 40.0;
   for (int round = 0; round < 200; ++round) {
@@ -63,7 +63,7 @@ TEST(LimitDrives, HoldsPowerAndSlewForAnyWish) {
   }
 }
 
-TEST(LimitDrives, OneScaleForAllAndReachedInTime) {
+TEST(LimitDrives, ScalesAllAlikeAndReachesTheRequestInTime) {
   std::vector<Drive> drives(4);
   for (int sample = 0; sample < 40; ++sample) {
     for (std::size_t f = 0; f < 4; ++f) {
@@ -76,7 +76,7 @@ TEST(LimitDrives, OneScaleForAllAndReachedInTime) {
   EXPECT_NEAR(drives[3].intensity, 0.5 / std::sqrt(2.5), 1e-12);
 }
 
-TEST(EvenShare, IsWhatTheLimitLeavesFociThatWantTheSame) {
+TEST(EvenShare, IsTheShareOfEqualFociUnderThePowerLimit) {
   EXPECT_EQ(even_share(1, 4.0), 1.0);
   EXPECT_EQ(even_share(4, 4.0), 1.0);
   EXPECT_EQ(even_share(8, 4.0), 0.5);

@@ -12,7 +12,7 @@
 
 namespace prostm::test {
 
-/// Pulls an emitter of foci in blocks and keeps every sample.
+/// Pulls an emitter of foci in blocks and records every sample.
 struct FociPlayer {
   explicit FociPlayer(const EmitSettings& settings, double rate = 40e3)
       : emitter(settings, rate),
@@ -46,8 +46,8 @@ struct FociPlayer {
   std::vector<FocusSample> kept;
 };
 
-/// Checks that the bounds hold for all samples that were kept, and that foci move only between
-/// silent samples.
+/// Checks that all recorded samples keep the bounds, and that foci move only between silent
+/// samples.
 inline void expect_within_bounds(const FociPlayer& player) {
   ASSERT_TRUE(player.watch.holds()) << "step " << player.watch.step << ", slew "
                                     << player.watch.slew << ", power " << player.watch.power;

@@ -45,7 +45,7 @@ TEST(FocusEmitter, FollowsItsWaveform) {
   }
 }
 
-TEST(FocusEmitter, TheRadiationPressureHasThePartsOfItsWaveform) {
+TEST(FocusEmitter, TheRadiationPressureHasTheComponentsOfItsWaveform) {
   const auto parts = [](const char* name) {
     Player player(with_waveform(name));
     player.submit({focus_at(0.0, 0.0, 1.0)});
@@ -96,7 +96,7 @@ TEST(FocusEmitter, MovesAtTheNextZeroBetweenTwoSilentSamples) {
   EXPECT_EQ(report.first_sample, 401);
 }
 
-TEST(FocusEmitter, GoesTheLeastWay) {
+TEST(FocusEmitter, MinimisesTravel) {
   Player player(settings_for(3));
   player.submit({focus_at(0.0, 0.0, 1.0), focus_at(0.04, 0.0, 1.0), focus_at(0.08, 0.0, 1.0)});
   player.play(300);
@@ -109,7 +109,7 @@ TEST(FocusEmitter, GoesTheLeastWay) {
   }
 }
 
-TEST(FocusEmitter, FociBeyondTheFocalPointsAreCounted) {
+TEST(FocusEmitter, ExcessFociAreCounted) {
   Player player(settings_for(1));
   player.submit({focus_at(0.0, 0.0, 1.0), focus_at(0.04, 0.0, 0.5)});
   player.play(300);
@@ -117,7 +117,7 @@ TEST(FocusEmitter, FociBeyondTheFocalPointsAreCounted) {
   EXPECT_NEAR(player.intensity(100), 1.0, 1e-6);
 }
 
-TEST(FocusEmitter, LossIsSilentFromTheNextZeroOn) {
+TEST(FocusEmitter, IsSilentFromTheNextZeroAfterALoss) {
   Player player(settings_for(2));
   player.submit({focus_at(0.0, 0.0, 1.0), focus_at(0.04, 0.0, 1.0)});
   player.play(250);
@@ -125,14 +125,14 @@ TEST(FocusEmitter, LossIsSilentFromTheNextZeroOn) {
   player.play(600);
   EXPECT_GT(player.intensity(399), 0.0);
   for (std::size_t k = 400; k < 850; ++k) EXPECT_EQ(player.intensity(k), 0.0) << k;
-  // a new plan restores the output at once
+  // a new plan resumes the output at once
   player.submit({focus_at(0.0, 0.01, 1.0)}, 2);
   player.play(200);
   EXPECT_NEAR(player.intensity(850 + 100), 1.0, 1e-6);
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(FocusEmitter, IsSilentWhileItIsMutedAndSoundsWithTheNextPlan) {
+TEST(FocusEmitter, IsSilentWhileMutedAndResumesWithTheNextPlan) {
   const auto mute = std::make_shared<Mute>();
   Player player(settings_for(1));
   player.emitter.obey(mute);
@@ -148,12 +148,12 @@ TEST(FocusEmitter, IsSilentWhileItIsMutedAndSoundsWithTheNextPlan) {
   player.play(200);
   player.submit({focus_at(0.0, 0.01, 1.0)}, 3);
   player.play(200);
-  EXPECT_EQ(player.intensity(1250 + 100), 0.0) << "what was planned before is lost";
+  EXPECT_EQ(player.intensity(1250 + 100), 0.0) << "the earlier plan is dropped";
   EXPECT_NEAR(player.intensity(1450 + 100), 1.0, 1e-6);
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(FocusEmitter, SilentStallEndsAfter100Milliseconds) {
+TEST(FocusEmitter, AStallEndsInSilenceAfter100Milliseconds) {
   Player player(settings_for(1));
   player.submit({focus_at(0.0, 0.0, 1.0)});
   player.play(6000);
@@ -162,7 +162,7 @@ TEST(FocusEmitter, SilentStallEndsAfter100Milliseconds) {
   EXPECT_EQ(player.emitter.stats().stalls, 1);
 }
 
-TEST(FocusEmitter, BadPlansAreRefused) {
+TEST(FocusEmitter, InvalidPlansAreRejected) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   LiftedPlan bad_place, bad_pressure, far, paths;
   bad_place.foci.push_back({Vec3(nan, 0.0, 0.2), 1.0});
@@ -244,7 +244,7 @@ TEST(FocusEmitter, BlocksOfAnyLengthGiveTheSameSamples) {
   for (std::size_t k = 0; k < 999; ++k) ASSERT_EQ(whole.intensity(k), parts.intensity(k)) << k;
 }
 
-TEST(FocusEmitter, AllocatesNothing) {
+TEST(FocusEmitter, DoesNotAllocate) {
   FocusEmitter emitter(settings_for(8), kRate);
   std::vector<FocusSample> block(8 * 40);
   LiftedPlan plan;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kStep = 0.1998e-3;  // slightly less than 8 m/s at 40 kHz [m]
 
-/// Counts samples until the focal point is on `to`, after half a lap on `from`; checks every step.
+/// Counts samples until the focal point is on `to`, after half a lap on `from`. Checks every step.
 int samples_to_join(const LiftedPath& from, const LiftedPath& to) {
   FocusMotion motion;
   motion.configure(40e3, kStep);
@@ -25,14 +25,14 @@ int samples_to_join(const LiftedPath& from, const LiftedPath& to) {
   return -1;
 }
 
-TEST(FocusMotion, OffsetSquareToThePathClosesFast) {
+TEST(FocusMotion, AnOffsetPerpendicularToThePathClosesFastest) {
   const LiftedPath a = test::ring(Vec3(0, 0, 0.20), 0.140, 100, 1.0);
   const LiftedPath b = test::ring(Vec3(0, 0, 0.205), 0.140, 100, 1.0);
   // √(Δ² − 0.175²) = 0.0964 mm per sample
   EXPECT_NEAR(samples_to_join(a, b), 5.0 / 0.0964, 2.0);
 }
 
-TEST(FocusMotion, AnyOffsetClosesByTheSpareStep) {
+TEST(FocusMotion, AnyOffsetClosesWithTheSpareStep) {
   Random random(2);
   for (int round = 0; round < 200; ++round) {
     const Vec3 shift(random.normal(), random.normal(), random.normal());
@@ -55,12 +55,12 @@ TEST(FocusMotion, ReachDependsOnSpeedAndDistance) {
   EXPECT_TRUE(motion.reaches(path, place));
   place.distance = 10.1e-3;
   EXPECT_FALSE(motion.reaches(path, place));
-  path.speed = 8.0;  // without a spare step
+  path.speed = 8.0;  // no spare step
   place.distance = 1e-3;
   EXPECT_FALSE(motion.reaches(path, place));
 }
 
-TEST(FocusMotion, LapsAreWholeNumbersOfSamples) {
+TEST(FocusMotion, LapsAreIntegerNumbersOfSamples) {
   FocusMotion motion;
   motion.configure(40e3, kStep);
   Random random(3);
@@ -76,8 +76,8 @@ TEST(FocusMotion, LapsAreWholeNumbersOfSamples) {
   }
 }
 
-TEST(FocusMotion, ALapBackwardsPassesTheFirstPointAsAnyOther) {
-  // starts a whole share of a lap from it, so that the arc there is zero up to rounding
+TEST(FocusMotion, ALapBackwardsPassesTheFirstPointLikeAnyOther) {
+  // starts a whole fraction of a lap away, so that the remaining arc is zero up to rounding
   Random random(4);
   for (int round = 0; round < 300; ++round) {
     const LiftedPath path =
@@ -87,7 +87,7 @@ TEST(FocusMotion, ALapBackwardsPassesTheFirstPointAsAnyOther) {
     motion.jump(path, nearest_place(path, path.p_D[0]));
     motion.advance();
     PathPlace place = nearest_place(path, path.p_D[path.p_D.size() / 4]);
-    place.tangent = point_at(path, 0.0).p_D - motion.position();  // against its direction
+    place.tangent = point_at(path, 0.0).p_D - motion.position();  // opposite to its direction
     motion.join(path, place);
     for (std::int64_t k = 0; k < 2 * motion.lap_samples(); ++k) {
       const Vec3 before = motion.position();

@@ -1,4 +1,4 @@
-// Foci whose modulations have phases of their own.
+// Foci whose modulations have individual phases.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ double a_of(std::size_t sample, double phase) {
   return std::abs(std::sin(kPi * (static_cast<double>(sample) / kPeriod - phase)));
 }
 
-TEST(FocusPhase, EachFocalPointBeginsAtAZeroOfItsOwn) {
+TEST(FocusPhase, EachFocalPointStartsAtItsOwnZero) {
   Player player(settings_for(3));
   player.submit(
       {focus_at(0.0, 0.0, 1.0), focus_at(0.04, 0.0, 0.25, 0.25), focus_at(0.08, 0.0, 1.0, 0.9)});
@@ -37,13 +37,13 @@ TEST(FocusPhase, EachFocalPointBeginsAtAZeroOfItsOwn) {
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(FocusPhase, ANewPlanTakesOverAtTheZerosOfEachAndKeepsThePhases) {
+TEST(FocusPhase, ANewPlanStartsAtTheZerosOfEachAndKeepsThePhases) {
   Player player(settings_for(2));
   player.submit({focus_at(0.0, 0.0, 1.0, 0.1), focus_at(0.08, 0.0, 1.0, 0.6)});
   player.play(500);
   player.submit({focus_at(0.001, 0.0, 0.25, 0.1), focus_at(0.081, 0.0, 0.25, 0.6)}, 2);
   player.play(600);
-  // zeros are at 20 and 120 of a period; each takes one sample more, of both
+  // zeros are at 20 and 120 of a period; each move takes one extra sample, for both
   for (std::size_t k = 500; k < 1100; ++k) {
     EXPECT_EQ(player.at(k, 1).p_D.x(), k <= 520 ? 0.08F : 0.081F) << k;
     EXPECT_EQ(player.at(k, 0).p_D.x(), k <= 621 ? 0.0F : 0.001F) << k;
@@ -56,19 +56,19 @@ TEST(FocusPhase, ANewPlanTakesOverAtTheZerosOfEachAndKeepsThePhases) {
   EXPECT_EQ(player.emitter.stats().max_focus_step, 0.0);
   TakeOver report;
   ASSERT_TRUE(player.emitter.next_take_over(report));
-  EXPECT_EQ(report.redrawn_sample, 120 + 179);  // nine tenths of a period once both sound
+  EXPECT_EQ(report.redrawn_sample, 120 + 179);  // nine tenths of a period after both have moved
   ASSERT_TRUE(player.emitter.next_take_over(report));
   EXPECT_EQ(report.first_sample, 521);
   EXPECT_EQ(report.redrawn_sample, 622 + 179);
 }
 
-TEST(FocusPhase, IsSilentFromItsZeroToThatOfANewPhase) {
+TEST(FocusPhase, IsSilentFromItsZeroToTheZeroOfANewPhase) {
   Player player(settings_for(2));
   player.submit({focus_at(0.0, 0.0, 1.0), focus_at(0.08, 0.0, 1.0, 0.5)});
   player.play(450);
   player.submit({focus_at(0.0, 0.0, 1.0, 0.25), focus_at(0.08, 0.0, 1.0, 0.5)}, 2);
   player.play(600);
-  // the second one's zero is at 500, the first one's at 600; each takes one sample more
+  // the second one's zero is at 500, the first one's at 600; each takes one extra sample
   const std::size_t rest = 601, rise = 602 + 50;
   for (std::size_t k = 502; k < 1050; ++k) {
     const double wanted = k < rest ? a_of(k - 1, 0.0) : k <= rise ? 0.0 : a_of(k - 2, 0.25);
@@ -80,13 +80,13 @@ TEST(FocusPhase, IsSilentFromItsZeroToThatOfANewPhase) {
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(FocusPhase, ThePowerLimitHoldsWhileSomePlayTheOldPlan) {
+TEST(FocusPhase, ThePowerLimitHoldsWhileSomeStillPlayTheOldPlan) {
   EmitSettings settings = settings_for(2);
   settings.power_limit = 1.0;
   Player player(settings);
   player.submit({focus_at(0.0, 0.0, 1.0, 0.9), focus_at(0.08, 0.0, 0.02)});
   player.play(2 * kPeriod - 10);
-  // the second one is to be loud from its zero on, most of a period before the first one's
+  // the second becomes strong at its zero, most of a period before the first one's
   player.submit({focus_at(0.0, 0.0, 0.02, 0.9), focus_at(0.08, 0.0, 1.0)}, 2);
   player.play(4 * kPeriod);
   EXPECT_TRUE(player.watch.holds()) << player.watch.power;
@@ -96,7 +96,7 @@ TEST(FocusPhase, ThePowerLimitHoldsWhileSomePlayTheOldPlan) {
       most = std::max(most, player.intensity(k, focus));
     return most;
   };
-  // what the first one leaves, then all
+  // first the power that the first one leaves, then all
   const double loud = std::sqrt(1.0 / 1.02), low = std::sqrt(0.02 / 1.02);
   EXPECT_NEAR(peak(2 * kPeriod + 2, 1), low, 1e-6);
   EXPECT_NEAR(peak(3 * kPeriod + 2, 1), loud, 1e-6);
@@ -114,7 +114,7 @@ TEST(FocusPhase, LossIsSilentWithinAPeriod) {
     for (std::size_t f = 0; f < 3; ++f) ASSERT_EQ(player.intensity(k, f), 0.0) << k;
   }
   EXPECT_TRUE(player.watch.holds());
-  // the clock begins anew
+  // the clock restarts
   player.submit({focus_at(0.0, 0.01, 1.0, 0.5)}, 2);
   player.play(400);
   const std::size_t f = player.intensity(1450, 0) > 0.0   ? 0
@@ -125,7 +125,7 @@ TEST(FocusPhase, LossIsSilentWithinAPeriod) {
   }
 }
 
-TEST(FocusPhase, PhasesOutOfBoundsAreRefused) {
+TEST(FocusPhase, PhasesOutOfBoundsAreRejected) {
   Player player(settings_for(1));
   int refused = 0;
   for (const double phase : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN(),
@@ -135,12 +135,12 @@ TEST(FocusPhase, PhasesOutOfBoundsAreRefused) {
     EXPECT_EQ(player.emitter.stats().refused_plans, ++refused);
     EXPECT_EQ(player.kept.back().intensity, 0.0F);
   }
-  player.submit({focus_at(0.0, 0.0, 1.0, 1.0)});  // as 0
+  player.submit({focus_at(0.0, 0.0, 1.0, 1.0)});  // same as 0
   player.play(200);
   EXPECT_NEAR(player.intensity(player.kept.size() - 100), 1.0, 1e-6);
 }
 
-TEST(FocusPhase, ALoopHasAllFromItsFirstSampleOn) {
+TEST(FocusPhase, ALoopIncludesAllFromItsFirstSample) {
   LiftedPlan plan;
   plan.foci.push_back(focus_at(0.0, 0.0, 1.0, 0.3));
   plan.foci.push_back(focus_at(0.05, 0.0, 0.25, 0.85));
@@ -152,7 +152,7 @@ TEST(FocusPhase, ALoopHasAllFromItsFirstSampleOn) {
   }
 }
 
-/// Whether the intensities are those of one count of the clock.
+/// Whether the intensities match one reading of the clock.
 bool in_phase(const Player& player, const std::vector<LiftedFocus>& plan, std::size_t n,
               Waveform waveform, double full_scale) {
   const std::size_t last = player.kept.size() / player.foci - 1;
@@ -200,7 +200,7 @@ TEST(FocusPhase, GuaranteesHoldForAnySequenceOfPlans) {
       }
       player.play(1 + static_cast<std::size_t>(random.below(900)));
       if (k % 4 != 3) continue;
-      // once all have gone over
+      // once all have moved to the new plan
       player.play(3 * n + 20);
       if (settings.power_limit == 8.0) {
         ASSERT_TRUE(in_phase(player, foci, n, settings.am_waveform, 1.0)) << trial << " " << k;

@@ -21,7 +21,7 @@ using test::settings_for;
 constexpr double kRate = 40e3, kLoop = 20e-3;  // [Hz], [s]
 const Vec3 kCentre(0.0, 0.0, 0.2);
 
-/// A ring that is gone round `laps` times in a loop.
+/// A ring that is traversed `laps` times in a loop.
 LiftedPath turning(const Vec3& centre, double length, int laps, double loop = kLoop,
                    int sides = 40) {
   LiftedPath path = ring(centre, length, sides, 1.0);
@@ -38,20 +38,20 @@ void submit(Player& player, const std::vector<LiftedPath>& paths, double loop = 
   player.emitter.submit();
 }
 
-/// The place of a path at sample k of a loop of n, as (E10) says.
+/// The position on a path at sample k of a loop of n, by (E10).
 Vec3 place_at(const LiftedPath& path, std::int64_t k, std::int64_t n, int laps) {
   return point_at(path, path.length * std::fmod(static_cast<double>(k) * laps / double(n), 1.0))
       .p_D;
 }
 
-/// Distance of a focal point at a sample from that place [m].
+/// Distance between a focal point at a sample and that position [m].
 double off(const Player& player, std::size_t foci, std::int64_t sample, std::size_t focus,
            const Vec3& place) {
   const FocusSample& s = player.kept[static_cast<std::size_t>(sample) * foci + focus];
   return (s.p_D.cast<double>() - place).norm();
 }
 
-TEST(InStep, FocalPointsFromSilenceGoRoundByOneClock) {
+TEST(InStep, FocalPointsThatStartFromSilenceFollowOneClock) {
   const LiftedPath a = turning(kCentre, 0.140, 1), b = turning(kCentre + Vec3(0.06, 0, 0), 0.06, 2),
                    c = turning(kCentre + Vec3(0.12, 0, 0), 0.04, 3);
   Player player(settings_for(3));
@@ -72,12 +72,12 @@ TEST(InStep, FocalPointsFromSilenceGoRoundByOneClock) {
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(InStep, ANewPlanTakesOverAtTheEndOfTheLoopAndKeepsThePhase) {
+TEST(InStep, ANewPlanStartsAtTheEndOfTheLoopAndKeepsThePhase) {
   LiftedPath a = turning(kCentre, 0.130, 1), b = turning(kCentre + Vec3(0.06, 0, 0), 0.06, 2);
   Player player(settings_for(2));
   player.keep = true;
   submit(player, {a, b});
-  player.play(10);  // 400 samples: b has ended a lap, but the loop goes on to 800
+  player.play(10);  // 400 samples: b has finished a lap, but the loop continues to 800
   const Vec3 drift(0.0, 2e-3, 1e-3);
   const LiftedPath c = turning(kCentre + drift, 0.125, 1),
                    d = turning(kCentre + Vec3(0.06, 0, 0) + drift, 0.065, 2);
@@ -94,7 +94,7 @@ TEST(InStep, ANewPlanTakesOverAtTheEndOfTheLoopAndKeepsThePhase) {
   EXPECT_TRUE(player.watch.holds()) << player.watch.step;
 }
 
-TEST(InStep, AtTheNextBlockIfAskedAndInPhaseToo) {
+TEST(InStep, StartsAtTheNextBlockIfRequestedAndInPhaseToo) {
   EmitSettings settings = settings_for(1);
   settings.switch_at = SwitchAt::Now;
   Player player(settings);
@@ -108,7 +108,7 @@ TEST(InStep, AtTheNextBlockIfAskedAndInPhaseToo) {
     ASSERT_LT(off(player, 1, k, 0, place_at(next, k, 800, 1)), 1e-6) << k;
   }
   EXPECT_EQ(player.emitter.stats().faded, 40);
-  // a loop of another length begins there
+  // a loop of another length starts there
   const LiftedPath other = turning(kCentre + Vec3(2e-3, 0, 0), 0.065, 1, 10e-3);
   submit(player, {other}, 10e-3);
   player.play(40);
@@ -118,7 +118,7 @@ TEST(InStep, AtTheNextBlockIfAskedAndInPhaseToo) {
   EXPECT_TRUE(player.watch.holds()) << player.watch.step;
 }
 
-TEST(InStep, ALoopOfAnotherLengthBeginsWhenTheOneInProgressHasEnded) {
+TEST(InStep, ALoopOfAnotherLengthStartsWhenTheCurrentOneEnds) {
   Player player(settings_for(2));
   player.keep = true;
   const LiftedPath a = turning(kCentre, 0.130, 1), b = turning(kCentre + Vec3(0.07, 0, 0), 0.06, 2);
@@ -138,7 +138,7 @@ TEST(InStep, ALoopOfAnotherLengthBeginsWhenTheOneInProgressHasEnded) {
   EXPECT_TRUE(player.watch.holds()) << player.watch.step;
 }
 
-TEST(InStep, AFarPathIsReachedBySilenceWhereTheClockIs) {
+TEST(InStep, ADistantPathIsReachedInSilenceAtTheClocksPosition) {
   Player player(settings_for(1));
   player.keep = true;
   submit(player, {turning(kCentre, 0.130, 1)});
@@ -157,13 +157,13 @@ TEST(InStep, AFarPathIsReachedBySilenceWhereTheClockIs) {
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(InStep, WhoStartsLateOrComesBackBeginsInPhase) {
+TEST(InStep, LateOrResumingFocalPointsStartInPhase) {
   const LiftedPath a = turning(kCentre, 0.130, 1), b = turning(kCentre + Vec3(0.07, 0, 0), 0.06, 2);
   Player player(settings_for(2));
   player.keep = true;
   submit(player, {a});  // the second focal point takes it
   player.play(7);
-  submit(player, {a, b});  // the first one rests, so it need not wait
+  submit(player, {a, b});  // the first one is idle, so there is no need to wait
   player.play(33);
   submit(player, {a});
   player.play(40);
@@ -175,7 +175,7 @@ TEST(InStep, WhoStartsLateOrComesBackBeginsInPhase) {
       ASSERT_LT(off(player, 2, k, 0, place_at(b, k, 800, 2)), 1e-6) << k;
     }
   }
-  // after a silence the loop begins anew
+  // after a silence the loop restarts
   player.emitter.lose();
   player.play(23);
   const std::int64_t start = player.samples();
@@ -188,8 +188,8 @@ TEST(InStep, WhoStartsLateOrComesBackBeginsInPhase) {
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(InStep, TheMatchingLooksAtThePlacesOfTheClock) {
-  // two rings about one middle, begun at opposite sides; then each turned by half a lap
+TEST(InStep, TheMatchingUsesThePositionsAtTheClock) {
+  // two concentric rings that start at opposite sides; then each is rotated by half a lap
   LiftedPath a = turning(kCentre, 0.130, 1), b = a;
   std::rotate(b.p_D.begin(), b.p_D.begin() + 20, b.p_D.end());
   measure(b);
@@ -200,7 +200,7 @@ TEST(InStep, TheMatchingLooksAtThePlacesOfTheClock) {
     player.keep = true;
     submit(player, {a, b});
     player.play(30);         // a lap and a half
-    submit(player, {b, a});  // the same places, so nothing is to be done
+    submit(player, {b, a});  // the same positions, so nothing changes
     player.play(60);
     EXPECT_EQ(player.emitter.stats().faded, 2 * 40);
     for (std::int64_t k = 0; k < 3600; ++k) {
@@ -209,7 +209,7 @@ TEST(InStep, TheMatchingLooksAtThePlacesOfTheClock) {
   }
 }
 
-TEST(InStep, APathTooLongForTheLoopTakesSeveral) {
+TEST(InStep, APathTooLongForTheLoopTakesSeveralLoops) {
   const LiftedPath slow = turning(kCentre, 0.190, 1),  // 9.5 m/s
       fast = turning(kCentre + Vec3(0.08, 0, 0), 0.06, 2);
   Player player(settings_for(2));
@@ -220,7 +220,7 @@ TEST(InStep, APathTooLongForTheLoopTakesSeveral) {
     ASSERT_LT(off(player, 2, k, 0, place_at(slow, k, 1600, 1)), 1e-6) << k;
     ASSERT_LT(off(player, 2, k, 1, place_at(fast, k, 1600, 4)), 1e-6) << k;
   }
-  // but a plan takes over after each
+  // but a plan can start after each loop
   submit(player, {fast});
   player.play(60);
   EXPECT_EQ(player.kept[2 * 4000].intensity, 1.0F);
@@ -228,7 +228,7 @@ TEST(InStep, APathTooLongForTheLoopTakesSeveral) {
   EXPECT_TRUE(player.watch.holds()) << player.watch.step;
 }
 
-TEST(InStep, LoopsOutOfBoundsAreRefused) {
+TEST(InStep, LoopsOutOfBoundsAreRejected) {
   Player player(settings_for(1));
   int refused = 0;
   for (const double loop : {-0.02, 0.9e-3, 1.1, std::numeric_limits<double>::infinity(),
@@ -239,7 +239,7 @@ TEST(InStep, LoopsOutOfBoundsAreRefused) {
   }
 }
 
-/// A plan, with its laps, that a random sequence plays.
+/// A plan with its laps, for a random sequence.
 struct Played {
   std::vector<LiftedPath> paths;
   std::vector<int> laps;
@@ -253,7 +253,7 @@ Played random_plan(Random& random, double drift, double loop) {
     if (random.uniform() < 0.1) continue;
     const Vec3 centre = kCentre + Vec3(0.05 * (p % 2), 0.05 * (p / 2), 0.0) +
                         drift * Vec3(random.normal(), random.normal(), random.normal());
-    const double longest = loop > 0.0 ? 7.8 * loop : 0.14;  // so that a lap fits in a loop
+    const double longest = loop > 0.0 ? 7.8 * loop : 0.14;  // so that a lap fits into a loop
     const double length = random.uniform(0.02, std::min(0.14, longest));
     const double fits = loop > 0.0 ? longest / length : 1.0;
     const int laps = std::max(1, std::min(1 + random.below(4), static_cast<int>(fits)));
@@ -267,7 +267,7 @@ Played random_plan(Random& random, double drift, double loop) {
   return plan;
 }
 
-/// Whether all focal points that sound are where one count of the clock says.
+/// Whether all active focal points are at the position of one reading of the clock.
 bool in_step(const Played& plan, std::int64_t n, std::span<const FocusSample> sample,
              std::int64_t count) {
   return std::all_of(sample.begin(), sample.end(), [&](const FocusSample& s) {
@@ -280,7 +280,7 @@ bool in_step(const Played& plan, std::int64_t n, std::span<const FocusSample> sa
   });
 }
 
-/// Finds a count at which all are in step; −1: none.
+/// Finds a reading at which all are in step; −1 without one.
 std::int64_t find_count(const Played& plan, std::int64_t n, std::span<const FocusSample> sample) {
   for (std::int64_t count = 0; count < n; ++count) {
     if (in_step(plan, n, sample, count)) return count;
@@ -330,8 +330,8 @@ TEST(InStep, PhasesAreExactAfterAnySequenceOfPlans) {
   EXPECT_GT(checked, 400);
 }
 
-TEST(InStep, TheClockGoesOnFromPlanToPlan) {
-  // 200 plans of 20 ms at any time: one count of samples from the first to the last
+TEST(InStep, TheClockContinuesAcrossPlans) {
+  // 200 plans of 20 ms at arbitrary times: one sample count from the first to the last
   Random random(3);
   Player player(settings_for(4));
   Played plan = random_plan(random, 2e-3, kLoop);
@@ -350,7 +350,7 @@ TEST(InStep, TheClockGoesOnFromPlanToPlan) {
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(InStep, AllocatesNothing) {
+TEST(InStep, DoesNotAllocate) {
   Player player(settings_for(8));
   Random random(9);
   const Played plan = random_plan(random, 0.01, kLoop), other = random_plan(random, 0.01, 10e-3);

@@ -16,7 +16,7 @@ namespace {
 
 using test::ring;
 
-/// Returns a field of 40 × 40 cells of 5 mm, all skin, with the heights of f [m].
+/// Returns a field of 40 × 40 cells of 5 mm, all skin, with heights f [m].
 template <class F>
 TargetFrame frame_with_height(F f) {
   TargetFrame frame;
@@ -50,14 +50,14 @@ FocalPath circle(int points = 20, double length = 0.140) {
   return path;
 }
 
-TEST(Lift, AFocusGetsTheHeightOfTheSkinThere) {
+TEST(Lift, AFocusGetsTheHeightOfTheSkin) {
   TargetFrame frame = frame_with_height([](const Vec2& x) { return 0.3 * x.x() - 0.1 * x.y(); });
   frame.patches[0].X_DP = Eigen::Translation3d(0.01, 0.02, 0.2) *
                           Eigen::AngleAxisd(0.4, Vec3(1.0, 2.0, 0.5).normalized());
   Plan plan;
   plan.foci.push_back({0, Vec2(0.0123, -0.0345), 2.5});
   LiftedPlan lifted;
-  lifted.paths.push_back(ring(Vec3::Zero(), 0.1, 20, 1.0));  // left from an earlier plan
+  lifted.paths.push_back(ring(Vec3::Zero(), 0.1, 20, 1.0));  // remains of an earlier plan
   lift(plan, frame, lifted);
   EXPECT_TRUE(lifted.paths.empty());
   ASSERT_EQ(lifted.foci.size(), 1u);
@@ -89,7 +89,7 @@ TEST(Lift, FlatSkinKeepsLengthAndPressure) {
   EXPECT_NEAR(path.pressure[98], 0.4 * flat.pressure[19] + 0.6 * flat.pressure[0], 1e-12);
 }
 
-TEST(Lift, SlopeMakesThePathLonger) {
+TEST(Lift, ASlopeLengthensThePath) {
   // a 30° slope up and down: a path across it keeps its length, a path along it grows by 1/cos 30°
   const double slope = std::tan(kPi / 6.0);
   const TargetFrame frame = frame_with_height([&](const Vec2& x) { return slope * x.x(); });
@@ -105,18 +105,18 @@ TEST(Lift, SlopeMakesThePathLonger) {
   }
   LiftedPlan lifted;
   lift(plan, frame, lifted);
-  // smoothing rounds the two turning points, over two cells each
+  // smoothing rounds the two turns, over two cells each
   EXPECT_NEAR(lifted.paths[0].length, 0.140 / std::cos(kPi / 6.0), 0.004);
   EXPECT_GT(lifted.paths[0].length, 0.150);
   EXPECT_NEAR(lifted.paths[1].length, 0.140, 1e-9);
-  // the plane's pose applies: the default plane lies 200 mm above the array
+  // the plane's pose applies: the default plane is 200 mm above the array
   double highest = 0.0;
   for (const Vec3& p : lifted.paths[0].p_D) highest = std::max(highest, p.z());
   EXPECT_NEAR(highest, 0.2 + 0.035 * slope, 0.003);
 }
 
-TEST(Lift, StairsOfARasterDoNotStretchThePath) {
-  // a 20° slope in voxels of 5 mm: stairs
+TEST(Lift, TheSteppedSkinOfARasterDoesNotLengthenThePath) {
+  // a 20° slope in voxels of 5 mm is stepped
   const double slope = std::tan(20.0 * kPi / 180.0);
   const auto smooth = frame_with_height([&](const Vec2& x) { return slope * x.x(); });
   const auto stairs = frame_with_height(
@@ -128,16 +128,16 @@ TEST(Lift, StairsOfARasterDoNotStretchThePath) {
   lift(plan, stairs, b);
   EXPECT_GT(a.paths[0].length, 0.141);
   EXPECT_NEAR(b.paths[0].length, a.paths[0].length, 0.015 * a.paths[0].length);
-  // the same path without smoothing of the stairs
+  // the same path without smoothing of the steps
   LiftedPath raw = b.paths[0];
   for (Vec3& p : raw.p_D) p.z() = height_at(stairs.patches[0], p.head<2>());
   measure(raw);
   EXPECT_GT(raw.length, 1.03 * a.paths[0].length);
 }
 
-/// Holds also if the kernel of (E1) is as wide as the path: the opposite point of a circle is
-/// equally near in both directions.
-TEST(Lift, LengthDoesNotDependOnWhereThePathBegins) {
+/// Holds even if the kernel of (E1) is as wide as the path: the opposite point of a circle is
+/// equally close in both directions.
+TEST(Lift, LengthDoesNotDependOnTheFirstPoint) {
   Random random(1);
   for (const double length : {0.010, 0.019, 0.021, 0.040, 0.140}) {
     for (int draw = 0; draw < 200; ++draw) {
@@ -165,7 +165,7 @@ TEST(Lift, DegeneratePathsAreAtRest) {
   Plan plan;
   FocalPath path;
   path.speed = 7.0;
-  plan.paths.push_back(path);  // left out, since it has no points
+  plan.paths.push_back(path);  // omitted, since it has no points
   path.points.emplace_back(0.01, 0.02);
   path.pressure.push_back(3.0);
   plan.paths.push_back(path);
@@ -186,7 +186,7 @@ TEST(Lift, DegeneratePathsAreAtRest) {
   }
 }
 
-TEST(Lift, TakesAnyPathAndAllocatesNothing) {
+TEST(Lift, AcceptsAnyPathWithoutAllocation) {
   const TargetFrame frame = frame_with_height([](const Vec2& x) { return 30.0 * x.squaredNorm(); });
   Random random(11);
   LiftedPlan lifted;
@@ -217,14 +217,14 @@ TEST(Lift, TakesAnyPathAndAllocatesNothing) {
   }
 }
 
-TEST(PointAt, WalksThePolygonAtUnitSpeed) {
+TEST(PointAt, FollowsThePolygonAtUnitSpeed) {
   const LiftedPath path = ring(Vec3(0.0, 0.0, 0.2), 0.140, 20, 1.0);
   for (int i = 0; i < 800; ++i) {
     const double s = 0.140 * i / 800.0;
     const PathPoint a = point_at(path, s), b = point_at(path, s + 0.175e-3);
     EXPECT_LE((b.p_D - a.p_D).norm(), 0.175e-3 + 1e-12);
     EXPECT_LT((point_at(path, s - 3 * path.length).p_D - a.p_D).norm(), 1e-12);
-    // all points lie on the outline
+    // all points lie on the polygon
     EXPECT_LT(nearest_place(path, a.p_D).distance, 1e-12);
     EXPECT_NEAR(std::remainder(nearest_place(path, a.p_D).s - s, path.length), 0.0, 1e-12);
   }

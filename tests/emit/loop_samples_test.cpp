@@ -34,7 +34,7 @@ LiftedPlan rings(const std::vector<double>& lengths) {
 }
 
 // 140 mm at 7 m/s take exactly 800 samples: nothing is adjusted, and the emitter gives the same.
-TEST(LoopSamples, IsWhatTheEmitterGivesOnceItRuns) {
+TEST(LoopSamples, MatchesTheRunningEmitter) {
   const LiftedPlan plan = rings({0.140, 0.070});
   const LoopSamples loop = loop_samples(plan, settings(), kRate);
   ASSERT_EQ(loop.samples, 800);
@@ -47,7 +47,7 @@ TEST(LoopSamples, IsWhatTheEmitterGivesOnceItRuns) {
   emitter.submit();
   std::vector<FocusSample> block(2 * 2400);
   emitter.fill(0, block);
-  // both start at the sample after the jump's silent one
+  // both start at the sample after the silent sample of the jump
   std::size_t offset = 0;
   double nearest = 1.0;
   for (std::size_t shift = 0; shift < 800; ++shift) {
@@ -68,7 +68,7 @@ TEST(LoopSamples, IsWhatTheEmitterGivesOnceItRuns) {
   }
 }
 
-TEST(LoopSamples, EveryPathClosesAndLittleIsAdjusted) {
+TEST(LoopSamples, EveryPathClosesWithLittleAdjustment) {
   Random random(5);
   double worst = 0.0;
   for (int round = 0; round < 100; ++round) {
@@ -81,7 +81,7 @@ TEST(LoopSamples, EveryPathClosesAndLittleIsAdjusted) {
     for (std::size_t f = 0; f < 4; ++f) {
       const double lap = lengths[f] / 7.0 * kRate;
       EXPECT_NEAR(loop.samples / (loop.laps[f] * lap) - 1.0, loop.stretch[f], 1e-9);
-      // the step across the seam equals the others
+      // the step across the seam equals the other steps
       const std::size_t last = 4 * static_cast<std::size_t>(loop.samples - 1);
       const float seam = (loop.sample[f].p_D - loop.sample[last + f].p_D).norm();
       EXPECT_NEAR(seam, lengths[f] * loop.laps[f] / loop.samples, 1e-5);
@@ -92,7 +92,7 @@ TEST(LoopSamples, EveryPathClosesAndLittleIsAdjusted) {
   EXPECT_LT(worst, 0.05);
 }
 
-TEST(LoopSamples, ThePowerLimitAndRestingPathsAreKept) {
+TEST(LoopSamples, KeepsThePowerLimitAndPathsAtRest) {
   LiftedPlan plan = rings({0.100});
   plan.paths.push_back(test::point(Vec3(0.0, 0.05, 0.2), 1.0));
   EmitSettings s = settings();
@@ -106,7 +106,7 @@ TEST(LoopSamples, ThePowerLimitAndRestingPathsAreKept) {
   }
 }
 
-TEST(LoopSamples, RefusesWhatIsNoLoop) {
+TEST(LoopSamples, RejectsPlansWithoutALoop) {
   EXPECT_THROW(loop_samples({}, settings(), kRate), std::invalid_argument);
   EXPECT_THROW(loop_samples(rings({0.1, 0.1, 0.1, 0.1, 0.1}), settings(), kRate),
                std::invalid_argument);
@@ -119,7 +119,7 @@ TEST(LoopSamples, RefusesWhatIsNoLoop) {
 TEST(LoopSamples, APlanInStepHasItsOwnLoop) {
   LiftedPlan plan = rings({0.140, 0.050, 0.030});
   plan.loop = 20e-3;
-  const std::vector<int> laps = {1, 2, 3};  // 800 samples are no whole number of three laps
+  const std::vector<int> laps = {1, 2, 3};  // 800 is not a multiple of three laps
   for (std::size_t f = 0; f < 3; ++f) {
     plan.paths[f].speed = plan.paths[f].length * laps[f] / plan.loop;
   }
@@ -128,7 +128,7 @@ TEST(LoopSamples, APlanInStepHasItsOwnLoop) {
   EXPECT_EQ(loop.laps, laps);
   EXPECT_EQ(loop.largest_stretch(), 0.0);
   EXPECT_NEAR(longest_lap(plan), 20e-3, 1e-12);
-  // sample by sample what the emitter gives in the second loop
+  // sample by sample, the emitter's output in its second loop
   EmitSettings emit = settings();
   emit.foci = 3;
   PathEmitter emitter(emit, kRate);
@@ -141,12 +141,12 @@ TEST(LoopSamples, APlanInStepHasItsOwnLoop) {
     ASSERT_LT((loop.sample[i].p_D - theirs.p_D).norm(), 1e-7F) << i;
     ASSERT_NEAR(loop.sample[i].intensity, theirs.intensity, 1e-6F) << i;
   }
-  // a loop that is no multiple of the unit is stretched for all alike
+  // a loop that is not a multiple of the unit is stretched for all paths alike
   plan.loop = 801.0 / kRate;
   const LoopSamples rounded = loop_samples(plan, settings(), kRate);
   EXPECT_EQ(rounded.samples, 800);
   for (const double stretch : rounded.stretch) EXPECT_NEAR(stretch, -1.0 / 801.0, 1e-12);
-  // a path too long for one loop takes two, and the others go round twice as often
+  // a path too long for one loop takes two, and the others make twice as many laps
   plan.loop = 10e-3;
   plan.paths[1].speed = 5.0;
   plan.paths.pop_back();
@@ -157,7 +157,7 @@ TEST(LoopSamples, APlanInStepHasItsOwnLoop) {
   EXPECT_THROW(loop_samples(plan, settings(), kRate), std::invalid_argument);
 }
 
-TEST(LoopSamples, OfFociAreWholePeriodsOfTheirModulation) {
+TEST(LoopSamples, FociGiveWholePeriodsOfTheirModulation) {
   LiftedPlan plan;
   plan.foci.push_back({Vec3(0.01, 0.0, 0.2), 1.0});
   plan.foci.push_back({Vec3(-0.03, 0.02, 0.19), 0.25});

@@ -20,7 +20,7 @@ double total(const MatchCosts& cost, const std::vector<int>& match) {
   return sum;
 }
 
-TEST(MatchPaths, FindsWhatAllPermutationsFind) {
+TEST(MatchPaths, FindsTheOptimumOverAllPermutations) {
   Random random(1);
   for (int round = 0; round < 200; ++round) {
     const int foci = 1 + random.below(6), paths = random.below(foci + 1);
@@ -47,7 +47,7 @@ TEST(MatchPaths, FindsWhatAllPermutationsFind) {
   }
 }
 
-TEST(MatchPaths, EightByEight) {
+TEST(MatchPaths, MatchesEightByEight) {
   Random random(2);
   MatchCosts cost{};
   for (auto& row : cost) row.fill(1.0);

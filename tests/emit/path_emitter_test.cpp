@@ -36,9 +36,9 @@ TEST(PathEmitter, ThePapersLoopTakes800SamplesOf175Micrometres) {
   const auto& kept = player.kept;
   ASSERT_EQ(kept.size(), 2400u);
   EXPECT_EQ(kept[0].intensity, 0.0F);
-  EXPECT_EQ(kept[40].intensity, 1.0F);  // faded up in 40 samples
+  EXPECT_EQ(kept[40].intensity, 1.0F);  // the rise takes 40 samples
   for (std::size_t i = 0; i + 800 < kept.size(); ++i) {
-    // the same place to the bit one lap later; the corners shorten steps of 0.175 mm slightly
+    // exactly the same position one lap later; the corners shorten steps of 0.175 mm slightly
     EXPECT_EQ(kept[i].p_D, kept[i + 800].p_D);
     EXPECT_NEAR(distance(kept[i], kept[i + 1]), 0.175e-3, 0.3e-6);
   }
@@ -74,7 +74,7 @@ TEST(PathEmitter, BlocksOfAnyLengthGiveTheSameSamples) {
   }
 }
 
-TEST(PathEmitter, PressureAlongThePathIsDriven) {
+TEST(PathEmitter, ThePressureAlongThePathIsPlayed) {
   LiftedPath path = ring(kCentre, 0.140, 100, 0.0);
   for (std::size_t i = 0; i < path.pressure.size(); ++i) {
     path.pressure[i] = 3.0 + 2.0 * std::cos(2.0 * kPi * static_cast<double>(i) / 100.0);
@@ -91,7 +91,7 @@ TEST(PathEmitter, PressureAlongThePathIsDriven) {
   }
   EXPECT_EQ(player.emitter.stats().saturated, 0);
 
-  // at a full scale of 4 the top is clipped and counted
+  // at a full scale of 4 the maximum is clipped and counted
   Player loud(settings_for(1, 4.0));
   loud.submit({path});
   loud.play(20);
@@ -100,12 +100,12 @@ TEST(PathEmitter, PressureAlongThePathIsDriven) {
   EXPECT_NEAR(static_cast<double>(saturated), 800.0 / 3.0, 4.0);
 }
 
-TEST(PathEmitter, DriftingPathIsFollowedWithoutAFade) {
+TEST(PathEmitter, ADriftingPathIsFollowedWithoutAFade) {
   Player player(settings_for(2));
   player.submit({ring(kCentre, 0.140, 50, 1.0), ring(kCentre + Vec3(0.06, 0, 0), 0.1, 50, 0.8)});
   player.play(40);
   const std::int64_t faded = player.emitter.stats().faded;
-  EXPECT_EQ(faded, 2 * 40 - 4);  // fading up to sqrt(0.8) takes 36 samples
+  EXPECT_EQ(faded, 2 * 40 - 4);  // the rise to sqrt(0.8) takes 36 samples
   for (int k = 1; k <= 50; ++k) {
     const Vec3 drift(0.0, 0.003 * k, 0.001 * k);
     player.submit({ring(kCentre + drift, 0.140, 50, 1.0),
@@ -117,7 +117,7 @@ TEST(PathEmitter, DriftingPathIsFollowedWithoutAFade) {
   EXPECT_TRUE(player.watch.holds()) << player.watch.step;
 }
 
-TEST(PathEmitter, FarPathIsReachedBySilenceAtTheLapsEnd) {
+TEST(PathEmitter, ADistantPathIsReachedInSilenceAtTheEndOfTheLap) {
   Player player(settings_for(1));
   player.keep = true;
   player.submit({ring(kCentre, 0.140, 50, 1.0)}, 1);
@@ -125,7 +125,7 @@ TEST(PathEmitter, FarPathIsReachedBySilenceAtTheLapsEnd) {
   player.submit({ring(kCentre + Vec3(0.1, 0, 0), 0.140, 50, 1.0)}, 2);
   player.play(60);
   // full until the lap of 800 samples ends, silent 40 samples later, then one silent sample, and
-  // full again after 40
+  // full again after another 40
   const auto& kept = player.kept;
   for (std::size_t i = 41; i <= 800; ++i) ASSERT_EQ(kept[i].intensity, 1.0F) << i;
   EXPECT_LT(kept[801].intensity, 1.0F);
@@ -150,7 +150,7 @@ TEST(PathEmitter, FarPathIsReachedBySilenceAtTheLapsEnd) {
   EXPECT_FALSE(player.emitter.next_take_over(second));
 }
 
-TEST(PathEmitter, SwitchNowTakesOverAtTheNextBlock) {
+TEST(PathEmitter, SwitchNowStartsThePlanAtTheNextBlock) {
   EmitSettings settings = settings_for(1);
   settings.switch_at = SwitchAt::Now;
   Player player(settings);
@@ -163,14 +163,14 @@ TEST(PathEmitter, SwitchNowTakesOverAtTheNextBlock) {
   TakeOver report;
   ASSERT_TRUE(player.emitter.next_take_over(report));
   EXPECT_EQ(report.plan, 1);
-  EXPECT_EQ(report.redrawn_sample, -1);  // cut after 400 of 800 samples
+  EXPECT_EQ(report.redrawn_sample, -1);  // cut off after 400 of 800 samples
   ASSERT_TRUE(player.emitter.next_take_over(report));
   EXPECT_EQ(report.plan, 2);
   EXPECT_EQ(report.first_sample, 440);
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(PathEmitter, VerySlowLapsAreNotWaitedFor) {
+TEST(PathEmitter, VerySlowLapsAreInterrupted) {
   Player player(settings_for(1));
   player.submit({ring(kCentre, 0.140, 50, 1.0, 1e-3)});
   player.play(40);
@@ -181,7 +181,7 @@ TEST(PathEmitter, VerySlowLapsAreNotWaitedFor) {
   EXPECT_EQ(player.emitter.stats().laps_cut, 1);
 }
 
-TEST(PathEmitter, NewPathIsDrawnInTheDirectionOfTravel) {
+TEST(PathEmitter, ANewPathIsTraversedInTheDirectionOfTravel) {
   LiftedPath forth = ring(kCentre, 0.140, 50, 1.0), back = forth;
   std::reverse(back.p_D.begin(), back.p_D.end());
   measure(back);
@@ -191,13 +191,13 @@ TEST(PathEmitter, NewPathIsDrawnInTheDirectionOfTravel) {
   player.play(20);
   player.submit({back});
   player.play(40);
-  // the circle in the opposite direction changes nothing
+  // a circle in the opposite direction makes no difference
   for (std::size_t i = 41; i + 800 < player.kept.size(); ++i) {
     EXPECT_LT(distance(player.kept[i], player.kept[i + 800]), 1e-6);
   }
 }
 
-/// Returns the least and largest distance of the first two focal points while both sound.
+/// Returns the smallest and largest distance of the first two focal points while both are active.
 std::pair<double, double> distances(const Player& player, std::size_t foci, std::size_t from = 0) {
   std::pair<double, double> out(std::numeric_limits<double>::max(), 0.0);
   for (std::size_t i = from * foci; i < player.kept.size(); i += foci) {
@@ -209,7 +209,7 @@ std::pair<double, double> distances(const Player& player, std::size_t foci, std:
   return out;
 }
 
-TEST(PathEmitter, FocalPointsFromSilenceBeginAtTheFirstPoints) {
+TEST(PathEmitter, FocalPointsStartFromSilenceAtTheFirstPoints) {
   const double apart = 0.05;
   const LiftedPath a = ring(kCentre, 0.140, 50, 1.0),
                    b = ring(kCentre + Vec3(apart, 0, 0), 0.140, 50, 1.0);
@@ -218,11 +218,11 @@ TEST(PathEmitter, FocalPointsFromSilenceBeginAtTheFirstPoints) {
   player.submit({a, b});
   player.play(100);
   EXPECT_EQ(player.kept[0].p_D, a.p_D[0].cast<float>());
-  // the planned distance is kept
+  // the planned distance is preserved
   EXPECT_NEAR(distances(player, 2).first, apart, 1e-6);
   EXPECT_NEAR(distances(player, 2).second, apart, 1e-6);
 
-  // even if other places would be farther apart
+  // even if other positions would be farther apart
   LiftedPath turned = b;
   std::rotate(turned.p_D.begin(), turned.p_D.begin() + 20, turned.p_D.end());
   Player plain(settings_for(2));
@@ -232,7 +232,7 @@ TEST(PathEmitter, FocalPointsFromSilenceBeginAtTheFirstPoints) {
   EXPECT_EQ(plain.kept[0].p_D, a.p_D[0].cast<float>());
   EXPECT_EQ(plain.kept[1].p_D, turned.p_D[0].cast<float>());
 
-  // again after a loss, from wherever the focal points rest
+  // likewise after a loss, wherever the focal points rest
   player.emitter.lose();
   player.play(50);
   const std::size_t silent = player.kept.size() / 2;
@@ -244,8 +244,8 @@ TEST(PathEmitter, FocalPointsFromSilenceBeginAtTheFirstPoints) {
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(PathEmitter, AFocalPointBeginsWhereItKeepsAwayFromThoseThatRun) {
-  // a second ring appears at any time of the first one's lap
+TEST(PathEmitter, AFocalPointStartsAwayFromTheActiveOnes) {
+  // a second ring appears at some time in the first one's lap
   const double radius = 0.140 / (2.0 * kPi);
   const LiftedPath a = ring(kCentre, 0.140, 50, 1.0);
   for (const double apart : {0.055, 0.0}) {
@@ -258,8 +258,8 @@ TEST(PathEmitter, AFocalPointBeginsWhereItKeepsAwayFromThoseThatRun) {
       player.play(blocks);
       player.submit({a, b});
       player.play(140);
-      // the best distance is that of the centres for two equal rings, and that of opposite sides
-      // for a ring in another, each to half of a 32nd of a lap
+      // the largest distance is that of the centres for two equal rings, and that of opposite sides
+      // for a ring inside another, each to half of a 32nd of a lap
       const double best = apart > 0.0 ? apart : radius + outline / (2.0 * kPi);
       const double off = 2.0 * radius * std::sin(kPi / 64.0);
       EXPECT_GT(distances(player, 2).first, best - off) << blocks;
@@ -269,7 +269,7 @@ TEST(PathEmitter, AFocalPointBeginsWhereItKeepsAwayFromThoseThatRun) {
 }
 
 TEST(PathEmitter, EachFocalPointKeepsToItsNeighbourhood) {
-  // the same four rings in every order: no focal point has to jump
+  // the same four rings in every order: no focal point needs to jump
   std::array<LiftedPath, 4> rings;
   for (std::size_t i = 0; i < 4; ++i) {
     rings[i] = ring(kCentre + Vec3(0.05 * static_cast<double>(i), 0, 0), 0.1, 30, 1.0);
@@ -284,7 +284,7 @@ TEST(PathEmitter, EachFocalPointKeepsToItsNeighbourhood) {
   EXPECT_EQ(player.emitter.stats().faded, 4 * 40);
 }
 
-TEST(PathEmitter, NumberOfPathsChanges) {
+TEST(PathEmitter, TheNumberOfPathsMayChange) {
   Player player(settings_for(4));
   const LiftedPath a = ring(kCentre, 0.140, 50, 1.0),
                    b = ring(kCentre + Vec3(0.08, 0, 0), 0.1, 50, 1.0);
@@ -297,13 +297,13 @@ TEST(PathEmitter, NumberOfPathsChanges) {
   player.submit({b});
   last = player.play(40);
   EXPECT_EQ(last[0].intensity + last[1].intensity + last[2].intensity + last[3].intensity, 1.0F);
-  // resting focal points do not move
+  // idle focal points do not move
   std::vector<FocusSample> before(last.begin(), last.end());
   last = player.play(5);
   int resting = 0;
   for (std::size_t f = 0; f < 4; ++f) resting += distance(before[f], last[f]) == 0.0 ? 1 : 0;
   EXPECT_EQ(resting, 3);
-  // five paths on four focal points: one path is dropped and counted
+  // five paths for four focal points: one path is dropped and counted
   player.submit({a, b, a, b, a});
   player.play(40);
   EXPECT_EQ(player.emitter.stats().dropped_paths, 1);
@@ -313,7 +313,7 @@ TEST(PathEmitter, NumberOfPathsChanges) {
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(PathEmitter, LossFadesWithin50Milliseconds) {
+TEST(PathEmitter, ALossFadesWithin50Milliseconds) {
   Player player(settings_for(2));
   player.submit({ring(kCentre, 0.140, 50, 1.0), point(kCentre + Vec3(0.05, 0, 0), 1.0)});
   player.play(10);
@@ -326,14 +326,14 @@ TEST(PathEmitter, LossFadesWithin50Milliseconds) {
   EXPECT_EQ(player.emitter.stats().stalls, 0);
   player.play(200);
   EXPECT_EQ(player.emitter.stats().stalls, 0);
-  // the next plan restores the output
+  // the next plan resumes the output
   player.submit({ring(kCentre, 0.140, 50, 1.0)});
   const auto back = player.play(3);
   EXPECT_EQ(back[back.size() - 2].intensity + back[back.size() - 1].intensity, 1.0F);
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(PathEmitter, IsSilentWhileItIsMutedAndSoundsWithTheNextPlan) {
+TEST(PathEmitter, IsSilentWhileMutedAndResumesWithTheNextPlan) {
   const auto mute = std::make_shared<Mute>();
   Player player(settings_for(2));
   player.emitter.obey(mute);
@@ -352,12 +352,12 @@ TEST(PathEmitter, IsSilentWhileItIsMutedAndSoundsWithTheNextPlan) {
   player.play(6);
   for (int i = 0; i < 100; ++i) {
     if (i % 40 == 0) submit();
-    // silent with one reason as with two; no stall is counted
+    // one reason mutes like two; no stall is counted
     mute->set(MuteReason::NoHand, i < 50);
     ASSERT_TRUE(silent(player.play(1))) << i;
   }
   mute->set(MuteReason::Calibration, false);
-  EXPECT_TRUE(silent(player.play(10))) << "what was planned before is lost";
+  EXPECT_TRUE(silent(player.play(10))) << "the earlier plan is dropped";
   submit();
   EXPECT_FALSE(silent(player.play(3)));
   EXPECT_EQ(player.emitter.stats().stalls, 0);
@@ -365,7 +365,7 @@ TEST(PathEmitter, IsSilentWhileItIsMutedAndSoundsWithTheNextPlan) {
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(PathEmitter, SilentStallFadesAfter100Milliseconds) {
+TEST(PathEmitter, AStallFadesAfter100Milliseconds) {
   Player player(settings_for(1));
   player.keep = true;
   player.submit({ring(kCentre, 0.140, 50, 1.0)});
@@ -378,7 +378,7 @@ TEST(PathEmitter, SilentStallFadesAfter100Milliseconds) {
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(PathEmitter, BadNumbersAreNeverEmitted) {
+TEST(PathEmitter, InvalidNumbersAreNeverEmitted) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinite = std::numeric_limits<double>::infinity();
   const LiftedPath good = ring(kCentre, 0.140, 50, 1.0);
@@ -401,7 +401,7 @@ TEST(PathEmitter, BadNumbersAreNeverEmitted) {
     for (const FocusSample& s : last) EXPECT_EQ(s.intensity, 0.0F);
   }
   EXPECT_TRUE(player.watch.holds());
-  // wrong arc lengths are measured anew
+  // wrong arc lengths are recomputed
   LiftedPath lying = good;
   lying.length = nan;
   for (double& s : lying.s) s = -1e300;
@@ -411,7 +411,7 @@ TEST(PathEmitter, BadNumbersAreNeverEmitted) {
   EXPECT_TRUE(player.watch.holds());
 }
 
-TEST(PathEmitter, PowerLimitScalesAllFociAlike) {
+TEST(PathEmitter, ThePowerLimitScalesAllFociAlike) {
   EmitSettings settings = settings_for(4);
   settings.power_limit = 1.0;
   Player player(settings);
@@ -426,7 +426,7 @@ TEST(PathEmitter, PowerLimitScalesAllFociAlike) {
   EXPECT_TRUE(player.watch.holds());
 }
 
-/// Returns any plan: points, tiny, ordinary and long loops, anywhere within 20 cm.
+/// Returns a random plan: points, tiny, ordinary and long loops, anywhere within 20 cm.
 LiftedPlan random_plan(Random& random, double near) {
   LiftedPlan plan;
   const int paths = random.below(kMaxPaths + 1);
@@ -483,7 +483,7 @@ TEST(PathEmitter, GuaranteesHoldForAnySequenceOfPlans) {
 }
 
 TEST(PathEmitter, AtMost5PercentOfSamplesAreInAFade) {
-  // 25 plans a second, from slowly drifting fields to plans that are unrelated to the previous one
+  // 25 plans a second, from slowly drifting fields to plans unrelated to the previous one
   for (const double drift : {0.5e-3, 2e-3, 5e-3, 0.1}) {
     Random random(5);
     Player player(settings_for(4));
@@ -511,7 +511,7 @@ TEST(PathEmitter, AtMost5PercentOfSamplesAreInAFade) {
   }
 }
 
-TEST(PathEmitter, AllocatesNothing) {
+TEST(PathEmitter, DoesNotAllocate) {
   Player player(settings_for(8));
   Random random(9);
   const LiftedPlan plan = random_plan(random, 0.05);

@@ -1,5 +1,5 @@
 #pragma once
-/// Shared paths and checks of the emission's tests.
+/// Paths and checks shared by the emission's tests.
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ inline LiftedPath closed_path(std::span<const Vec3> points, double pressure, dou
   return path;
 }
 
-/// Returns a regular polygon with `sides` sides and the given length of outline [m].
+/// Returns a regular polygon with `sides` sides and the given perimeter [m].
 inline LiftedPath ring(const Vec3& centre, double length, int sides, double pressure,
                        double speed = 7.0) {
   std::vector<Vec3> points;
@@ -53,9 +53,9 @@ class Watch {
       look_at(block.subspan(i, last_.size()));
   }
 
-  // largest values found
+  // largest values so far
   double step = 0.0;  ///< [m] between samples above 1 %
-  double slew = 0.0;  ///< change of intensity per sample
+  double slew = 0.0;  ///< change of intensity between samples
   double power = 0.0;
   double highest = 0.0, lowest = 0.0;
   bool finite = true;
@@ -94,7 +94,7 @@ class Watch {
   bool started_ = false;
 };
 
-/// Pulls an emitter block by block, as a device does.
+/// Pulls an emitter block by block, like a device.
 class Player {
  public:
   static constexpr std::size_t kBlock = 40;
@@ -104,7 +104,7 @@ class Player {
         watch(settings.foci, sample_rate, settings.power_limit),
         block_(kBlock * static_cast<std::size_t>(settings.foci)) {}
 
-  /// Pulls n blocks. @return the samples of the last one.
+  /// Pulls n blocks. @return the samples of the last block.
   std::span<const FocusSample> play(int n) {
     for (int i = 0; i < n; ++i) {
       emitter.fill(next_, block_);

@@ -29,8 +29,8 @@ std::vector<FocusSample> samples_of(const LiftedPlan& plan, double max_speed = k
   return out;
 }
 
-/// Returns the period of a focal point in samples: the mean of as many laps as there are, each from
-/// where it is nearest to the path's first point to the next such place.
+/// Returns the period of a focal point in samples: the mean over its laps, each measured between
+/// the samples nearest to the path's first point.
 double period_of(const LiftedPath& path, const std::vector<FocusSample>& samples, std::size_t f,
                  std::size_t foci) {
   constexpr double kNear = 0.15e-3;  // [m], above half of the largest step
@@ -51,7 +51,7 @@ double period_of(const LiftedPath& path, const std::vector<FocusSample>& samples
   return laps > 0 ? static_cast<double>(last - first) / laps : 0.0;
 }
 
-/// Rings, far from each other.
+/// Rings far from each other.
 LiftedPlan rings(Random& random, int paths, double least, double most, double speed) {
   LiftedPlan plan;
   for (int k = 0; k < paths; ++k) {
@@ -72,7 +72,7 @@ void expect_played(const LiftedPlan& plan, const PlayedPlan& played, double max_
   }
 }
 
-TEST(PlayedPlan, PeriodsAndSpeedsAreThoseOfTheSamples) {
+TEST(PlayedPlan, PeriodsAndSpeedsMatchTheSamples) {
   Random random(31);
   for (int round = 0; round < 60; ++round) {
     const double speed = random.uniform(1.0, 20.0);
@@ -87,7 +87,7 @@ TEST(PlayedPlan, PeriodsAndSpeedsAreThoseOfTheSamples) {
   }
 }
 
-TEST(PlayedPlan, SoAreThoseOfPlansInStep) {
+TEST(PlayedPlan, PeriodsInStepMatchTheSamples) {
   Random random(32);
   for (int round = 0; round < 40; ++round) {
     LiftedPlan plan = rings(random, 2 + round % 3, 0.02, 0.2, 1.0);
@@ -98,7 +98,7 @@ TEST(PlayedPlan, SoAreThoseOfPlansInStep) {
   }
 }
 
-TEST(PlayedPlan, ASlowedPathIsNamedWithTheLimit) {
+TEST(PlayedPlan, ASlowedPathIsReportedWithTheLimit) {
   LiftedPlan plan;
   plan.paths.push_back(test::ring(Vec3(0.0, 0.0, 0.2), 0.1, 60, 1.0, 10.0));
   const PlayedPlan played = played_plan(plan, kRate);
@@ -108,12 +108,12 @@ TEST(PlayedPlan, ASlowedPathIsNamedWithTheLimit) {
   EXPECT_THAT(played_warnings(played)[0],
               testing::HasSubstr("path 1 is planned at 10 m/s, 10.00 ms a lap, and played at 7.984 "
                                  "m/s, 12.53 ms: focal points move at 8 m/s at most"));
-  // the loop that fields are computed for differs from the plan by as much
+  // the loop for computing fields differs from the plan by the same factor
   const LoopSamples loop = loop_samples(plan, test::settings_for(1), kRate);
   EXPECT_NEAR(loop.largest_stretch(), 0.26, 0.01);
 }
 
-TEST(PlayedPlan, APathAtTheLimitIsNotChanged) {
+TEST(PlayedPlan, APathAtTheLimitIsUnchanged) {
   LiftedPlan plan;
   plan.paths.push_back(test::ring(Vec3(0.0, 0.0, 0.2), 0.2, 60, 1.0, kMaxFocusSpeed));
   EXPECT_EQ(played_plan(plan, kRate).changed_paths(), 0);
@@ -127,7 +127,7 @@ TEST(PlayedPlan, TheEmitterCountsPathsThatItChanges) {
   EXPECT_EQ(player.emitter.stats().changed_paths, 1);
 }
 
-TEST(PlayedPlan, TheEmitterCountsSamplesUnderTheSilentShare) {
+TEST(PlayedPlan, TheEmitterCountsSamplesBelowTheSilentLevel) {
   test::Player player(test::settings_for(1));
   player.submit({test::ring(Vec3(0.0, 0.0, 0.2), 0.1, 60, 0.005)});
   player.play(10);
@@ -157,7 +157,7 @@ TargetFrame dome(Random& random) {
   return frame;
 }
 
-TEST(PlayedPlan, PlansOfEveryPresetHaveThePeriodsThatArePlayed) {
+TEST(PlayedPlan, PlansOfEveryPresetHaveThePlayedPeriods) {
   Random random(33);
   constexpr std::array kPresets = {Preset::Paper, Preset::PaperValid, Preset::Best, Preset::Fast};
   for (int round = 0; round < 40; ++round) {

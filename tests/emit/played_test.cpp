@@ -34,7 +34,7 @@ TargetFrame flat_frame(int cells = 60) {
   return frame;
 }
 
-/// Returns a regular polygon whose pressure drops to `low` between every two samples of 1.
+/// Returns a regular polygon whose pressure drops to `low` midway between samples of 1.
 FocalPath spiky(const Vec2& centre, double length, double low) {
   constexpr int kPoints = 28;
   FocalPath path;
@@ -50,8 +50,8 @@ FocalPath spiky(const Vec2& centre, double length, double low) {
   return path;
 }
 
-/// Returns the emitted pressures of the first path by PathEmitter for `laps` laps, from the second
-/// on.
+/// Returns the pressures of the first path as emitted by PathEmitter in `laps` laps, from the
+/// second lap on.
 std::vector<double> emitted(const Plan& plan, const TargetFrame& frame, EmitSettings s,
                             std::size_t lap, std::size_t laps) {
   s.foci = static_cast<int>(plan.paths.size());
@@ -71,8 +71,8 @@ std::vector<double> emitted(const Plan& plan, const TargetFrame& frame, EmitSett
   return pressure;
 }
 
-/// Returns the played pressure of the first path at sample k of a lap; the polygon's edges are
-/// equal.
+/// Returns the played pressure of the first path at sample k of a lap, for a polygon with equal
+/// edges.
 double played_at(const SegmentPressures& played, const Plan& plan, std::size_t k, std::size_t lap) {
   const std::size_t points = plan.paths[0].points.size();
   const double place =
@@ -81,7 +81,7 @@ double played_at(const SegmentPressures& played, const Plan& plan, std::size_t k
   return played.at(segment, place - static_cast<double>(segment));
 }
 
-TEST(PlayedPressures, AreThoseOfTheEmittersSecondLap) {
+TEST(PlayedPressures, MatchTheEmittersSecondLap) {
   const TargetFrame frame = flat_frame();
   Plan plan;
   plan.paths.push_back(spiky(Vec2::Zero(), 0.140, 0.0));
@@ -104,7 +104,7 @@ TEST(PlayedPressures, AreThoseOfTheEmittersSecondLap) {
   }
 }
 
-TEST(PlayedPressures, AreThePlansOwnWhereTheyChangeSlowly) {
+TEST(PlayedPressures, EqualThePlannedOnesWhereTheyChangeSlowly) {
   const TargetFrame frame = flat_frame();
   Plan plan;
   plan.paths.push_back(spiky(Vec2(-0.05, 0.0), 0.140, 0.9));
@@ -120,7 +120,7 @@ TEST(PlayedPressures, AreThePlansOwnWhereTheyChangeSlowly) {
   }
 }
 
-TEST(PlayedPressures, AreWhatThePowerLimitLeaves) {
+TEST(PlayedPressures, FollowThePowerLimit) {
   const TargetFrame frame = flat_frame();
   Plan plan;
   for (int k = 0; k < 4; ++k) {
@@ -132,7 +132,7 @@ TEST(PlayedPressures, AreWhatThePowerLimitLeaves) {
   for (std::size_t segment = 0; segment < 4 * 28; ++segment) {
     EXPECT_NEAR(played.at(segment, 0.5), 0.25, 1e-6);
   }
-  // with laps of different lengths, the mean over laps
+  // if laps differ in length, the mean over laps
   plan.paths.clear();
   plan.paths.push_back(spiky(Vec2(-0.05, 0.0), 0.140, 0.2));
   plan.paths.push_back(spiky(Vec2(0.05, 0.0), 0.099, 0.2));
@@ -145,11 +145,11 @@ TEST(PlayedPressures, AreWhatThePowerLimitLeaves) {
   EXPECT_NEAR(ours, all, 0.01);
 }
 
-TEST(PlayedPressures, InStepAreThoseOfTheEmittersSecondLoop) {
+TEST(PlayedPressures, InStepMatchTheEmittersSecondLoop) {
   const TargetFrame frame = flat_frame();
   Plan plan;
   plan.loop = 20e-3;
-  const int laps[] = {3, 2};  // 800 samples are no whole number of three laps
+  const int laps[] = {3, 2};  // 800 is not a multiple of three laps
   for (int k = 0; k < 2; ++k) {
     plan.paths.push_back(spiky(Vec2(0.06 * k, 0.0), 0.045, 0.3));
     FocalPath& path = plan.paths.back();
@@ -175,7 +175,7 @@ TEST(PlayedPressures, InStepAreThoseOfTheEmittersSecondLoop) {
   EXPECT_THROW(played_pressures(plan, frame, settings(), kRate), std::invalid_argument);
 }
 
-TEST(PlayedPressures, MissOfTiltedSkinWhatIsBeyondFullScale) {
+TEST(PlayedPressures, OnTiltedSkinLackWhatExceedsFullScale) {
   TargetFrame frame = flat_frame();
   TargetField& field = frame.patches[0];
   for (int row = 0; row < field.rows; ++row) {
@@ -192,10 +192,10 @@ TEST(PlayedPressures, MissOfTiltedSkinWhatIsBeyondFullScale) {
     const auto [low, high] = std::minmax_element(played.pressure.begin(), played.pressure.end());
     return std::pair(*low, *high);
   };
-  // room for the factor of about two: pressures as planned
+  // headroom for the factor of about two: pressures as planned
   EXPECT_NEAR(range().first, 1.0, 0.02);
   EXPECT_NEAR(range().second, 1.0, 0.02);
-  // no room: about half is left
+  // no headroom: about half remains
   s.full_scale_pressure = 1.0;
   EXPECT_NEAR(range().second, 0.5, 0.2);
   // not compensated: pressures as planned
@@ -203,7 +203,7 @@ TEST(PlayedPressures, MissOfTiltedSkinWhatIsBeyondFullScale) {
   EXPECT_NEAR(range().first, 1.0, 1e-9);
 }
 
-TEST(PlayedPressures, OfFociArePeaks) {
+TEST(PlayedPressures, OfFociArePeakPressures) {
   const TargetFrame frame = flat_frame();
   Plan plan;
   plan.foci.push_back({0, Vec2(0.01, 0.0), 0.3});
@@ -214,7 +214,7 @@ TEST(PlayedPressures, OfFociArePeaks) {
   EXPECT_NEAR(played.at(1, 0.5), 1.0, 1e-6);  // full scale
 }
 
-TEST(PlayedPressures, TakeOddPlans) {
+TEST(PlayedPressures, AcceptUnusualPlans) {
   const TargetFrame frame = flat_frame();
   Plan plan;
   EXPECT_TRUE(played_pressures(plan, frame, settings(), kRate).end.empty());

@@ -20,7 +20,7 @@ FocusMotion started(const LiftedPath& path, std::int64_t samples) {
   return motion;
 }
 
-TEST(FocusMotion, SaysWhereItWillBe) {
+TEST(FocusMotion, PredictsItsPosition) {
   Random random(1);
   for (int round = 0; round < 100; ++round) {
     const LiftedPath path = test::ring(kCentre, random.uniform(0.0001, 0.14), 30, 1.0,
@@ -40,8 +40,8 @@ TEST(StartPlace, FirstIsThePathsFirstPoint) {
   EXPECT_EQ(first_place(path).p_D, path.p_D[0]);
 }
 
-TEST(StartPlace, ApartIsTheBestOfAllPlacesTried) {
-  // plays two laps from each of 32 places
+TEST(StartPlace, ApartIsTheBestOfAllCandidates) {
+  // plays two laps from each of 32 positions
   Random random(2);
   for (int round = 0; round < 20; ++round) {
     std::array<FocusMotion, 3> others;
@@ -73,13 +73,13 @@ TEST(StartPlace, ApartIsTheBestOfAllPlacesTried) {
       PathPlace other;
       other.s = path.length * place / 32.0;
       other.p_D = point_at(path, other.s).p_D;
-      // the 64 checked moments do not cover all samples
+      // the 64 instants checked do not cover all samples
       EXPECT_GT(cost(other), 0.7 * cost(chosen)) << round;
     }
   }
 }
 
-TEST(StartPlace, PointsAndVerySlowPathsAreOrdinary) {
+TEST(StartPlace, PointsAndVerySlowPathsAreHandled) {
   FocusMotion silent;
   silent.configure(40e3, kStep);
   const LiftedPath ring = test::ring(kCentre, 0.14, 40, 1.0),

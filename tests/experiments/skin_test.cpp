@@ -11,7 +11,7 @@
 namespace prostm::experiments {
 namespace {
 
-TEST(SkinBench, LapsAreClosedAndRunAtOneSpeed) {
+TEST(SkinBench, LapsAreClosedAndAtConstantSpeed) {
   const struct {
     Lap lap;
     double length;
@@ -29,7 +29,7 @@ TEST(SkinBench, LapsAreClosedAndRunAtOneSpeed) {
   }
 }
 
-TEST(SkinBench, APeakLiesBetweenTheValues) {
+TEST(SkinBench, APeakIsInterpolatedBetweenTheValues) {
   std::vector<double> x, y;
   for (int i = 0; i < 9; ++i) {
     x.push_back(i);
@@ -40,7 +40,7 @@ TEST(SkinBench, APeakLiesBetweenTheValues) {
   EXPECT_EQ(peak_place(x, y), 8.0);
 }
 
-/// Largest radiation pressure of a sample, and its place.
+/// Largest radiation pressure in a sample, and its position.
 struct Strongest {
   double pressure;
   Vec2 at;
@@ -64,7 +64,7 @@ TEST(SkinBench, TheFieldFollowsTheLap) {
       const Vec2 asked = lap(static_cast<double>(sample) / StmField::kSamples);
       const Strongest at_once = strongest(ideal, palm, sample);
       EXPECT_LT((at_once.at - asked).norm(), 2.2e-3);
-      // all in phase there: the sum of the amplitudes by (A1)
+      // all in phase at the focus: the sum of the amplitudes by (A1)
       double sum = 0.0;
       for (std::size_t n = 0; n < array.position.size(); ++n) {
         sum += std::abs(propagate(array, Medium(), n, Vec3(asked.x(), asked.y(), palm.height)));
@@ -85,7 +85,7 @@ TEST(SkinBench, TheFieldFollowsTheLap) {
   }
 }
 
-TEST(SkinBench, TwoFociAreAlikeAndWeakerThanOne) {
+TEST(SkinBench, TwoFociAreEqualAndWeakerThanOne) {
   const Palm palm;
   const std::vector<double> one = foci_pressure(usx_array(), palm, {Vec2(1e-3, 1e-3)});
   const std::vector<double> two =
@@ -98,7 +98,7 @@ TEST(SkinBench, TwoFociAreAlikeAndWeakerThanOne) {
   EXPECT_GT(at(two, 13), 0.3 * at(one, 24));
 }
 
-TEST(SkinBench, TheGainsOfThePlannerAreThoseOfTheModel) {
+TEST(SkinBench, ThePlannersGainsMatchTheModel) {
   const std::array<SkinSettings, 1> nominal = {SkinSettings()};
   const std::array<double, 1> usual = {kLoopSpeeds[LoopTable::usual_speed()]};
   const LoopTable table = loop_table(kLoopLengths, usual, nominal, [] {});

@@ -11,7 +11,7 @@
 namespace prostm {
 namespace {
 
-/// Returns a skin with nearly one speed, 5 m/s, at the frequencies of a moving focus of 4 mm.
+/// Returns a skin of nearly constant wave speed, 5 m/s, at the frequencies of a moving 4 mm focus.
 SkinModel nearly_plain() {
   SkinSettings settings;
   settings.slow_speed = 4.56;
@@ -21,7 +21,7 @@ SkinModel nearly_plain() {
 }
 
 const SkinPatch kPatch{121, 121, 2e-3};
-constexpr int kAhead = 20;  // columns before the focus
+constexpr int kAhead = 20;  // columns ahead of the focus
 
 /// Computes the wake of a focus of 1 N with σ = 4 mm, kAhead columns from the patch's right edge.
 std::vector<double> wake(const SkinModel& skin, double speed) {
@@ -37,9 +37,9 @@ std::vector<double> wake(const SkinModel& skin, double speed) {
   return wake_velocity(skin, kPatch, pressure, speed);
 }
 
-/// Height and value of the fastest skin of a column, in the upper half.
+/// Height and velocity of the fastest skin in a column, in the upper half.
 struct Crest {
-  double height, value;  ///< [m] from the line of motion, [m/s]
+  double height, value;  ///< [m] above the line of motion, [m/s]
 };
 Crest crest(const std::vector<double>& velocity, int col) {
   Crest found{0.0, 0.0};
@@ -50,7 +50,7 @@ Crest crest(const std::vector<double>& velocity, int col) {
   return found;
 }
 
-/// Returns the angle between the wake's crest and the line of motion [°], by a straight line
+/// Returns the angle between the wake's crest and the line of motion [°], from a straight line
 /// through the crests 30 to 110 mm behind the focus.
 double wake_angle(const std::vector<double>& velocity) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
@@ -66,7 +66,7 @@ double wake_angle(const std::vector<double>& velocity) {
   return std::atan2(n * xy - x * y, n * xx - x * x) * 180.0 / kPi;
 }
 
-TEST(SkinWake, HasMachsAngle) {
+TEST(SkinWake, HasTheMachAngle) {
   const SkinModel skin = nearly_plain();
   for (const double speed : {7.5, 9.0, 12.0, 15.0}) {
     const double expected = std::asin(5.0 / speed) * 180.0 / kPi;
@@ -74,8 +74,8 @@ TEST(SkinWake, HasMachsAngle) {
   }
 }
 
-// The real skin's wake: its speed is that at the frequencies that the focus excites there.
-TEST(SkinWake, HasMachsAngleAtThePlateau) {
+// The wake of the real skin moves at the wave speed of the frequencies that the focus excites.
+TEST(SkinWake, HasTheMachAngleAtThePlateau) {
   const SkinModel skin{SkinSettings{}};
   for (const double speed : {10.0, 12.0, 15.0}) {
     const double expected = std::asin(7.0 / speed) * 180.0 / kPi;
@@ -83,7 +83,7 @@ TEST(SkinWake, HasMachsAngleAtThePlateau) {
   }
 }
 
-TEST(SkinWake, ThereIsNoFrontBelowTheWaveSpeed) {
+TEST(SkinWake, HasNoFrontBelowTheWaveSpeed) {
   const SkinModel skin = nearly_plain();
   const auto far_share = [&](double speed) {
     const std::vector<double> velocity = wake(skin, speed);
@@ -97,7 +97,7 @@ TEST(SkinWake, ThereIsNoFrontBelowTheWaveSpeed) {
   EXPECT_GT(far_share(12.0), 0.08);
 }
 
-TEST(SkinWake, IsTheSameOnBothSides) {
+TEST(SkinWake, IsSymmetric) {
   const SkinModel skin{SkinSettings{}};
   const std::vector<double> velocity = wake(skin, 8.0);
   double most = 0.0, difference = 0.0;

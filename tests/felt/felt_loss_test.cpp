@@ -34,7 +34,7 @@ FeltCells cells_of(fields::Pattern pattern) {
   return cells;
 }
 
-/// Sources anywhere on a raster of the generated fields, with spectra and amplitudes of any sign.
+/// Sources anywhere on a raster of the generated fields, with random spectra and amplitudes.
 template <class Real>
 struct Sources {
   Sources(std::uint64_t seed, std::size_t count) {
@@ -73,7 +73,7 @@ TEST(FeltLoss, HasTheGradientOfItsValues) {
     Sources<double> sources(7, kSources);
     judge(sources);
     judge.loss.keep_loudness(sources.amplitude, 1.1);
-    for (double& a : sources.amplitude) a *= 0.6;  // quieter than what is kept
+    for (double& a : sources.amplitude) a *= 0.6;  // below the amplitude that is kept
     std::vector<double> by_amplitude(kSources), by_x(kSources), by_y(kSources), by_time(kSources);
     judge.loss.evaluate(sources.amplitude);
     judge.loss.gradient(by_amplitude);
@@ -103,14 +103,14 @@ TEST(FeltLoss, HasTheGradientOfItsValues) {
   }
 }
 
-/// Compares both precisions on this set of vectors.
+/// Compares both precisions on this vector target.
 void expect_same_in_single_precision() {
   const FeltSkins<double> tables = skins<double>();
   const FeltSkins<float> short_tables = skins<float>();
   FeltLoss<double> loss(2, kFeltCells, 64, kWeights, true);
   FeltLoss<float> short_loss(2, kFeltCells, 64, kWeights, true);
   for (const fields::Pattern pattern : fields::kPatterns) {
-    for (const std::size_t count : {1, 2, 7, 64}) {  // odd numbers, too
+    for (const std::size_t count : {1, 2, 7, 64}) {  // including odd numbers
       const Sources<double> sources(count, count);
       const Sources<float> short_sources(count, count);
       loss.set_target(cells_of(pattern));
@@ -141,7 +141,7 @@ void expect_same_in_single_precision() {
   }
 }
 
-TEST(FeltLoss, IsTheSameInSinglePrecisionOnEverySetOfVectors) {
+TEST(FeltLoss, IsTheSameInSinglePrecisionOnEveryVectorTarget) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     const test::OnlyTargets only(target);
     SCOPED_TRACE(hwy::TargetName(target));
@@ -149,7 +149,7 @@ TEST(FeltLoss, IsTheSameInSinglePrecisionOnEverySetOfVectors) {
   }
 }
 
-TEST(FeltLoss, CountsALackAndNotTheUnit) {
+TEST(FeltLoss, MeasuresALackIndependentlyOfTheUnit) {
   Judge judge(fields::Pattern::FourPlumes);
   FeltLoss<double> lack(2, kFeltCells, kSources,
                         {.fine = 0.3, .energy = 0.2, .loudness = 0.0, .quiet = 0.0}, false);
@@ -163,7 +163,7 @@ TEST(FeltLoss, CountsALackAndNotTheUnit) {
   EXPECT_NEAR(lack.loudness(), 1000.0 * loudness, 1e-9 * loudness);
 }
 
-TEST(FeltLoss, AllocatesNothing) {
+TEST(FeltLoss, DoesNotAllocate) {
   FeltLoss<float> loss(2, kFeltCells, 64, kWeights, true);
   const FeltSkins<float> tables = skins<float>();
   const Sources<float> sources(5, 64);
@@ -180,7 +180,7 @@ TEST(FeltLoss, AllocatesNothing) {
   EXPECT_EQ(guard.allocations(), 0U);
 }
 
-TEST(FeltCells, KeepAreaAndPressure) {
+TEST(FeltCells, PreserveAreaAndPressure) {
   for (const fields::Pattern pattern : fields::kPatterns) {
     TargetField field = fields::make(pattern, 30);
     field.weight.assign(field.size(), 2.0);
@@ -215,7 +215,7 @@ TEST(FeltCells, FitAnyRaster) {
   }
 }
 
-TEST(StepPath, PassesItsPointsInTimeAndHasTheGradientOfThat) {
+TEST(StepPath, PassesItsPointsInTimeWithTheMatchingGradient) {
   Random random(2);
   constexpr std::size_t kPoints = 9;
   for (int draw = 0; draw < 200; ++draw) {

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kSigma = 4.3e-3, kPeriod = 20e-3;
 
-/// Returns the percept's harmonic n at every cell of a raster in whose middle a Gaussian focus
-/// pulses once in a period, computed by the harmonic sum of the skin.
+/// Returns the percept's harmonic n at every cell of a raster with a Gaussian focus in its middle
+/// that pulses once per period, computed by the harmonic sum of the skin.
 std::vector<std::complex<double>> pulsing_focus(int cells, double cell, int n) {
   constexpr int kSamples = 64;
   SkinResponse response(SkinModel(SkinSettings()), {cells, cells, cell});
@@ -39,7 +39,7 @@ std::vector<std::complex<double>> pulsing_focus(int cells, double cell, int n) {
   return {field.begin(), field.end()};
 }
 
-TEST(FocusResponse, IsThatOfTheSkinAroundAFocus) {
+TEST(FocusResponse, MatchesTheSkinAroundAFocus) {
   constexpr int kCells = 65;
   constexpr double kCell = 2e-3;
   FocusResponseMaker maker;
@@ -63,7 +63,7 @@ TEST(FocusResponse, IsThatOfTheSkinAroundAFocus) {
   }
 }
 
-TEST(FocusResponse, HasTheSlopesOfItsValues) {
+TEST(FocusResponse, HasTheDerivativesOfItsValues) {
   FocusResponseMaker maker;
   FocusResponse<double> table;
   maker.make(SkinModel(SkinSettings()), kSigma, kPeriod, table);
@@ -78,7 +78,7 @@ TEST(FocusResponse, HasTheSlopesOfItsValues) {
   }
 }
 
-TEST(FocusResponse, IsFarAwayThatOfItsLastDistance) {
+TEST(FocusResponse, FarAwayEqualsTheLastTabulatedDistance) {
   FocusResponseMaker maker;
   FocusResponse<float> table;
   maker.make(SkinModel(SkinSettings()), kSigma, kPeriod, table);

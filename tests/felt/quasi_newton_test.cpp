@@ -37,7 +37,7 @@ TEST(QuasiNewton, FindsTheMinimumOfAQuadraticForm) {
   }
 }
 
-TEST(QuasiNewton, NeverEndsHigherAndKeepsItsCount) {
+TEST(QuasiNewton, NeverEndsHigherAndKeepsToItsCount) {
   Random random(4);
   QuasiNewton descent(8);
   for (int draw = 0; draw < 20'000; ++draw) {
@@ -69,7 +69,7 @@ TEST(QuasiNewton, NeverEndsHigherAndKeepsItsCount) {
   }
 }
 
-TEST(QuasiNewton, StaysWhereNothingPullsAndAllocatesNothing) {
+TEST(QuasiNewton, StaysWithoutAGradientAndDoesNotAllocate) {
   QuasiNewton descent(4);
   std::vector<float> x = {1.0F, 2.0F};
   const QuasiNewton::Cost flat = [](std::span<const float>, std::span<float> gradient) {

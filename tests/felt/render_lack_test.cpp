@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kBlur = 8.5;  // [mm]
 
-/// (Q5) and (Q4) by sums over all pairs of blocks.
+/// (Q5) and (Q4) as sums over all pairs of blocks.
 struct Slow {
   explicit Slow(const FeltCells& blocks) : cells(blocks.cells()) {
     for (const FeltCells::Cell& cell : cells) target.push_back(cell.pressure);
@@ -55,13 +55,13 @@ struct Slow {
   std::vector<std::vector<double>> weight;
 };
 
-TEST(RenderLack, IsThatOfSumsOverAllBlocks) {
+TEST(RenderLack, MatchesTheSumsOverAllBlocks) {
   Random random(5);
   FeltCells blocks(kFeltCells);
   RenderLack<double> lack(kFeltCells);
   RenderLack<float> short_lack(kFeltCells);
   for (const fields::Pattern pattern : fields::kPatterns) {
-    for (const int raster : {25, 54, 80}) {  // a cell or more to a block
+    for (const int raster : {25, 54, 80}) {  // one or more cells per block
       const TargetField target = fields::make(pattern, 10, raster);
       blocks.set(target, max_pressure(target));
       lack.set(blocks);

@@ -16,7 +16,7 @@ std::vector<FeltKind> all_kinds() {
   return all;
 }
 
-/// Pearson's correlation over the skin of two fields of one raster.
+/// Pearson's correlation over the skin of two fields on one raster.
 double correlation(const TargetField& a, const TargetField& b) {
   double n = 0.0, ma = 0.0, mb = 0.0;
   for (std::size_t c = 0; c < a.size(); ++c) {
@@ -58,7 +58,7 @@ TEST(FeltFields, AreValidTargetsThatVaryOverTheSkin) {
   }
 }
 
-TEST(FeltFields, OutlinesHaveTheSizesThatTheySay) {
+TEST(FeltFields, OutlinesHaveTheStatedSizes) {
   const TargetField hand = felt_field(FeltKind::Plume, 1, Outline::Hand),
                     palm = felt_field(FeltKind::Plume, 1, Outline::Palm);
   EXPECT_NEAR(hand.cols * hand.cell, 0.105, 1e-12);
@@ -72,7 +72,7 @@ TEST(FeltFields, OutlinesHaveTheSizesThatTheySay) {
   EXPECT_LT(area(hand), 0.014);
 }
 
-TEST(FeltFields, ASeedGivesOneFieldAndAnotherSeedAnother) {
+TEST(FeltFields, DependOnTheSeedAlone) {
   for (const FeltKind kind : all_kinds()) {
     const TargetField one = felt_field(kind, 3, Outline::Hand);
     EXPECT_EQ(one.pressure, felt_field(kind, 3, Outline::Hand).pressure);
@@ -80,7 +80,7 @@ TEST(FeltFields, ASeedGivesOneFieldAndAnotherSeedAnother) {
   }
 }
 
-TEST(FeltFields, KindsHaveNamesOfTheirOwn) {
+TEST(FeltFields, KindsHaveDistinctNames) {
   std::set<std::string> names;
   for (const FeltKind kind : all_kinds()) names.insert(to_string(kind));
   EXPECT_EQ(names.size(), kFeltKinds.size() + kUnseenKinds.size());

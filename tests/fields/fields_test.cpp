@@ -24,7 +24,7 @@ Vec2 mass_centre(const TargetField& field) {
   return sum / mass;
 }
 
-/// Returns the root mean square over the cells, relative to the larger maximum.
+/// Returns the root mean square difference over the cells, relative to the larger maximum.
 double difference(const TargetField& a, const TargetField& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(a.pressure[i] - b.pressure[i], 2);
@@ -45,7 +45,7 @@ TEST(Fields, EveryFrameIsAValidTargetOnTheSameHand) {
   }
 }
 
-TEST(Fields, SequencesMoveSmoothlyAndDoMove) {
+TEST(Fields, SequencesMoveSmoothly) {
   for (const Pattern pattern : kPatterns) {
     TargetField before = make(pattern, 0);
     const TargetField first = before;
@@ -68,7 +68,7 @@ TEST(Fields, AFinerRasterSamplesTheSamePattern) {
     EXPECT_NEAR(fine.cell, kCell / 3.0, 1e-15);
     for (int row = 0; row < kCells; ++row) {
       for (int col = 0; col < kCells; ++col) {
-        // the centre of the middle one of nine cells is the same, up to rounding
+        // the middle one of nine cells has the same centre, up to rounding
         const std::size_t i = coarse.index(row, col), j = fine.index(3 * row + 1, 3 * col + 1);
         if (coarse.skin[i] == 0 || fine.skin[j] == 0) continue;
         EXPECT_NEAR(coarse.pressure[i], fine.pressure[j], 1e-9);
@@ -77,7 +77,7 @@ TEST(Fields, AFinerRasterSamplesTheSamePattern) {
   }
 }
 
-TEST(Fields, MovedPatternsMoveByTheirDisplacement) {
+TEST(Fields, MovedPatternsMoveByTheStatedDisplacement) {
   for (int frame = 1; frame < kFrames; ++frame) {
     EXPECT_NEAR((displacement(frame) - displacement(frame - 1)).norm(), kMovedStep, 1e-6);
   }
@@ -107,7 +107,7 @@ TEST(Fields, ASecondContactAppearsAtOnce) {
     EXPECT_EQ(*std::max_element(before.second.begin(), before.second.end()), 0.0);
     const double peak = *std::max_element(after.second.begin(), after.second.end());
     EXPECT_GT(peak, 0.95);
-    // far from the steady contact: the pressure was nearly zero where the new contact is strong
+    // far from the steady contact: nearly no pressure before the new contact appears there
     for (std::size_t i = 0; i < after.second.size(); ++i) {
       if (after.second[i] > 0.5) {
         EXPECT_LT(before.field.pressure[i], 0.1);

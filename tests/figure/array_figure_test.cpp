@@ -18,7 +18,7 @@ ArrayFigure two_units() {
   return figure;
 }
 
-TEST(DrawArray, ShowsEveryPartOfWhatItIsGiven) {
+TEST(DrawArray, ShowsEveryPartOfItsInput) {
   const test::TemporaryFolder folder;
   const auto bytes_of = [&](const ArrayFigure& figure) {
     draw_array(figure, folder.file("a.png"));
@@ -39,7 +39,7 @@ TEST(DrawArray, ShowsEveryPartOfWhatItIsGiven) {
   EXPECT_TRUE(differs([](auto& f) { std::swap(f.position[0], f.position[1]); }));
 }
 
-TEST(DrawArray, RefusesWhatDoesNotFitTogether) {
+TEST(DrawArray, RejectsInconsistentInput) {
   const test::TemporaryFolder folder;
   ArrayFigure figure = two_units();
   figure.unit.pop_back();

@@ -17,7 +17,7 @@ using test::input_error;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Returns the page's luminances, row 0 at the bottom, two pixels a point.
+/// Returns the page's luminances, row 0 at the bottom, two pixels per point.
 TargetField pixels_of(Canvas& canvas, const std::string& path) {
   canvas.save();
   return read_field(path, {.cell_mm = 1.0});
@@ -53,7 +53,7 @@ TEST(Canvas, PutsTheFirstRowOfCellsAtTheBottom) {
   EXPECT_EQ(at(5, 15), 1.0);
 }
 
-TEST(Canvas, CutsAtAClip) {
+TEST(Canvas, ClipsDrawing) {
   const test::TemporaryFolder folder;
   Canvas canvas(folder.file("a.png"), 20, 20);
   canvas.clip({0, 0, 10, 20});
@@ -64,7 +64,7 @@ TEST(Canvas, CutsAtAClip) {
   EXPECT_EQ(page.pressure[page.index(20, 35)], 1.0);
 }
 
-TEST(Canvas, WritesTextWhereItIsTold) {
+TEST(Canvas, WritesTextAtItsPosition) {
   const test::TemporaryFolder folder;
   Canvas canvas(folder.file("a.png"), 60, 20);
   const TextStyle style{.size = 14.0, .colour = {0, 0, 0}, .align = Align::Right};
@@ -99,7 +99,7 @@ TEST(Canvas, ShortensTextBetweenCharacters) {
   EXPECT_EQ(canvas.shortened(text, 0.0, style), "…");
 }
 
-TEST(Canvas, SaysWhyItCannotWrite) {
+TEST(Canvas, ReportsWhyItCannotWrite) {
   const test::TemporaryFolder folder;
   EXPECT_THAT(input_error([&] { Canvas(folder.file("a.gif"), 10, 10); }),
               HasSubstr("must end in .png, .svg or .pdf"));
@@ -114,7 +114,7 @@ TEST(Canvas, SaysWhyItCannotWrite) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
-TEST(Canvas, KeepsTheOldPictureWhenTheDiskIsFull) {
+TEST(Canvas, KeepsTheOldFileWhenTheDiskIsFull) {
   const test::TemporaryFolder folder;
   for (const char* name : {"a.png", "a.svg", "a.pdf"}) {
     const std::string path = folder.file(name);
@@ -131,7 +131,7 @@ TEST(Canvas, KeepsTheOldPictureWhenTheDiskIsFull) {
   EXPECT_EQ(folder.entries(), 3u);
 }
 
-TEST(Canvas, WritesScalableGraphics) {
+TEST(Canvas, WritesVectorGraphics) {
   const test::TemporaryFolder folder;
   Canvas canvas(folder.file("a.svg"), 30, 20);
   canvas.disc(Vec2(10, 10), 5, kInk);
@@ -139,7 +139,7 @@ TEST(Canvas, WritesScalableGraphics) {
   EXPECT_THAT(read_file(folder.file("a.svg")), AllOf(HasSubstr("<svg"), HasSubstr("</svg>")));
 }
 
-TEST(Canvas, WritesPagesWithoutTheTimeOfDay) {
+TEST(Canvas, WritesPagesWithoutATimestamp) {
   const test::TemporaryFolder folder;
   Canvas canvas(folder.file("a.pdf"), 30, 20);
   canvas.disc(Vec2(10, 10), 5, kInk);
@@ -149,7 +149,7 @@ TEST(Canvas, WritesPagesWithoutTheTimeOfDay) {
   EXPECT_THAT(page, AllOf(HasSubstr("%%EOF"), Not(HasSubstr("CreationDate"))));
 }
 
-TEST(FieldColour, GrowsEvenlyInLightness) {
+TEST(FieldColour, IncreasesEvenlyInLightness) {
   double previous = 0.0, smallest = 100.0, largest = 0.0;
   for (int i = 0; i <= 100; ++i) {
     const Colour c = field_colour(i / 100.0);

@@ -45,7 +45,7 @@ inline TargetField hand_field() {
   return field;
 }
 
-/// A plan with its trace and its rendered field, all from the planner.
+/// A plan from the planner, with its trace and its rendered field.
 struct PlannedExample {
   TargetField target = hand_field();
   Plan plan;

@@ -25,7 +25,7 @@ TEST(DrawPlan, DrawsTheSameBytesForTheSamePlan) {
   EXPECT_EQ(folder.entries(), 2u);
 }
 
-TEST(DrawPlan, DrawsScalableGraphics) {
+TEST(DrawPlan, WritesVectorGraphics) {
   const test::TemporaryFolder folder;
   const test::PlannedExample example;
   draw_plan(example.figure, folder.file("a.svg"));
@@ -34,7 +34,7 @@ TEST(DrawPlan, DrawsScalableGraphics) {
   EXPECT_GT(text.size(), 50'000u);
 }
 
-TEST(DrawPlan, IsLowerForAPresetWithoutThePapersSteps) {
+TEST(DrawPlan, IsSmallerForAPresetWithoutThePapersSteps) {
   const test::TemporaryFolder folder;
   const test::PlannedExample steps, best(test::hand_field(), "best");
   EXPECT_TRUE(best.trace.clusters.empty());
@@ -47,12 +47,12 @@ TEST(DrawPlan, IsLowerForAPresetWithoutThePapersSteps) {
     return std::stod(svg.substr(svg.find("height=\"") + 8));
   };
   EXPECT_LT(height(three), 0.75 * height(six));
-  // below a plan with steps, each figure keeps its own height
+  // below a plan with steps, each figure keeps its height
   draw_plan(best.figure, folder.file("both.svg"), &steps.figure);
   EXPECT_GT(height(read_file(folder.file("both.svg"))), height(six) + 0.3 * height(three));
 }
 
-TEST(DrawPlan, ShowsEveryPartOfWhatItIsGiven) {
+TEST(DrawPlan, ShowsEveryPartOfItsInput) {
   const test::TemporaryFolder folder;
   const auto bytes_of = [&](const PlanFigure& figure) {
     draw_plan(figure, folder.file("a.png"));
@@ -79,7 +79,7 @@ TEST(DrawPlan, ShowsEveryPartOfWhatItIsGiven) {
   EXPECT_FALSE(bytes_of(example.figure) == less_tour);
 }
 
-/// Returns the pixels of a PNG along x (0) or y (1), from its header.
+/// Returns the size of a PNG in pixels along x (0) or y (1), from its header.
 int side_of(const std::string& png, std::size_t axis) {
   int side = 0;
   for (std::size_t i = 16 + 4 * axis; i < 20 + 4 * axis; ++i) {
@@ -88,7 +88,7 @@ int side_of(const std::string& png, std::size_t axis) {
   return side;
 }
 
-TEST(DrawPlan, DrawsAnotherPlanUnderIt) {
+TEST(DrawPlan, DrawsAnotherPlanBelow) {
   const test::TemporaryFolder folder;
   const test::PlannedExample example;
   PlanFigure other = example.figure;
@@ -102,7 +102,7 @@ TEST(DrawPlan, DrawsAnotherPlanUnderIt) {
   const std::string both = bytes_of(&other);
   EXPECT_EQ(side_of(both, 0), side_of(alone, 0));
   EXPECT_GT(2 * side_of(both, 1), 3 * side_of(alone, 1));
-  EXPECT_LT(side_of(both, 1), 2 * side_of(alone, 1));  // the table is there once
+  EXPECT_LT(side_of(both, 1), 2 * side_of(alone, 1));  // the table is drawn once
 
   // title, metrics, paths, trace and reconstruction are all visible
   Plan fewer = example.plan;
@@ -119,7 +119,7 @@ TEST(DrawPlan, DrawsAnotherPlanUnderIt) {
     EXPECT_FALSE(bytes_of(&changed) == both);
   }
 
-  // the table's controls are the plan's own
+  // the table's controls are those of the first plan
   other.controls.clear();
   EXPECT_TRUE(bytes_of(&other) == both);
 }
@@ -147,7 +147,7 @@ TEST(DrawPlan, DrawsDegenerateFields) {
   draws(60, 1, true, 1.0);
 }
 
-TEST(DrawPlan, RefusesWhatDoesNotBelongTogether) {
+TEST(DrawPlan, RejectsInconsistentInput) {
   const test::PlannedExample example;
   PlanFigure figure = example.figure;
   figure.reconstruction.pop_back();
@@ -172,7 +172,7 @@ TEST(DrawScene, DrawsNoneOneAndTwoHands) {
   EXPECT_FALSE(pages[1] == pages[2]);
 }
 
-TEST(DrawScene, ShowsEveryPartOfWhatItIsGiven) {
+TEST(DrawScene, ShowsEveryPartOfItsInput) {
   const test::TemporaryFolder folder;
   const test::PlannedExample example;
   const auto bytes_of = [&](const SceneFigure& figure) {
@@ -197,7 +197,7 @@ TEST(DrawScene, ShowsEveryPartOfWhatItIsGiven) {
   }
 }
 
-TEST(DrawScene, RefusesWhatDoesNotBelongTogether) {
+TEST(DrawScene, RejectsInconsistentInput) {
   const test::PlannedExample example;
   SceneFigure scene = test::scene_example(example, 1);
   scene.smoke.pop_back();
@@ -210,7 +210,7 @@ TEST(DrawScene, RefusesWhatDoesNotBelongTogether) {
   EXPECT_THROW(draw_scene(scene, "a.png"), std::invalid_argument);
 }
 
-TEST(Panel, KeepsOneScaleForBothAxesWithYUp) {
+TEST(Panel, HasOneScaleForBothAxesWithYUp) {
   const test::TemporaryFolder folder;
   figure::Canvas canvas(folder.file("a.png"), 100, 100);
   const figure::Panel panel(canvas, {10, 20, 60, 60}, {Vec2(-0.1, 0.0), Vec2(0.1, 0.1)});
@@ -226,7 +226,7 @@ TEST(NumberText, HasAMinusSignAndNoNegativeZero) {
   EXPECT_EQ(figure::number_text(-1e-9, 3), "0.000");
 }
 
-TEST(DrawPhysical, ShowsEveryPartOfWhatItIsGiven) {
+TEST(DrawPhysical, ShowsEveryPartOfItsInput) {
   const test::TemporaryFolder folder;
   const test::PlannedExample example;
   PhysicalField field;

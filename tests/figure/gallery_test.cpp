@@ -28,7 +28,7 @@ Chart chart() {
       {{"ours", {1e3, 1e4, 1e5}, {100, 700, 8000}}, {"theirs", {1e3, 1e4, 1e5}, {9e3, 8e4, 9e5}}}};
 }
 
-TEST(DrawGallery, ShowsEveryPartOfWhatItIsGiven) {
+TEST(DrawGallery, ShowsEveryPartOfItsInput) {
   const test::TemporaryFolder folder;
   const auto bytes_of = [&](const std::vector<GalleryField>& fields) {
     draw_gallery({"All"}, fields, folder.file("a.png"));
@@ -52,7 +52,7 @@ TEST(DrawGallery, ShowsEveryPartOfWhatItIsGiven) {
   EXPECT_FALSE(bytes_of(changed) == whole);
 }
 
-TEST(DrawGallery, ShowsFociNotesAndTheCaptionThatIsAskedFor) {
+TEST(DrawGallery, ShowsFociNotesAndTheRequestedCaption) {
   const test::TemporaryFolder folder;
   std::vector<GalleryField> fields = gallery_of(2, 1);
   const auto bytes_of = [&](const GalleryPage& page) {
@@ -68,7 +68,7 @@ TEST(DrawGallery, ShowsFociNotesAndTheCaptionThatIsAskedFor) {
   EXPECT_FALSE(bytes_of({"All"}) == empty);
 }
 
-TEST(DrawGallery, RefusesWhatDoesNotFitTogether) {
+TEST(DrawGallery, RejectsInconsistentInput) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.png");
   EXPECT_THROW(draw_gallery({"None"}, {}, path), std::invalid_argument);
@@ -82,7 +82,7 @@ TEST(DrawGallery, RefusesWhatDoesNotFitTogether) {
   test::input_error([&] { draw_gallery({"Name"}, gallery_of(1, 1), folder.file("a.gif")); });
 }
 
-/// The file of charts. In SVG two drawings of the same charts differ: names of parts count up.
+/// The file of charts. Two drawings of the same charts differ in SVG: part names are numbered.
 std::string bytes_in(const std::string& ending, const std::vector<Chart>& charts,
                      std::size_t in_row = 0) {
   const test::TemporaryFolder folder;
@@ -100,12 +100,12 @@ TEST(DrawCharts, ShowsEveryLine) {
   changed = chart();
   changed.series.pop_back();
   EXPECT_FALSE(bytes_of({changed}) == whole);
-  // linear axes, labels, points at zero and below
+  // linear axes, labels, points at and below zero
   Chart linear{"Trade", "a", "b", false, {{"ours", {-1, 0, 2}, {0.1, -0.05, 0.2}}}, false};
   const std::string plain = bytes_of({linear});
   linear.series[0].labels = {"one", "two", "three"};
   EXPECT_FALSE(bytes_of({linear}) == plain);
-  // whole numbers along x, a single value
+  // integers along x, a single value
   changed = {"Paths", "paths", "µs", false, {{"ours", {1}, {5}}}};
   EXPECT_TRUE(bytes_in(".svg", {changed}).find("</svg>") != std::string::npos);
 }
@@ -130,13 +130,13 @@ TEST(DrawCharts, ShowsDotsAndIntervals) {
   EXPECT_TRUE(bytes_in(".svg", {chart}).find("</svg>") != std::string::npos);
   EXPECT_FALSE(bytes_of({chart, chart, chart}, 2) == bytes_of({chart, chart, chart}, 3));
   EXPECT_TRUE(bytes_of({chart, chart, chart}, 0) == bytes_of({chart, chart, chart}, 3));
-  chart.series[0].dots = {{1.0, 0.5, 1.0}, {std::nextafter(1.0, 2.0), 0.6, 1.0}};  // hardly a range
+  chart.series[0].dots = {{1.0, 0.5, 1.0}, {std::nextafter(1.0, 2.0), 0.6, 1.0}};  // tiny range
   EXPECT_TRUE(bytes_in(".svg", {chart}).find("</svg>") != std::string::npos);
   chart.series[0].dots[0].y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(bytes_of({chart}, 0), std::invalid_argument);
 }
 
-TEST(DrawCharts, RefusesWhatHasNoPlaceOnTheAxes) {
+TEST(DrawCharts, RejectsValuesWithoutAPositionOnTheAxes) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.svg");
   EXPECT_THROW(draw_charts({}, path), std::invalid_argument);

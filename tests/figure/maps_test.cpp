@@ -19,7 +19,7 @@ MapFigure figure_of(int count) {
   return figure;
 }
 
-TEST(DrawMaps, ShowsEveryPartOfWhatItIsGiven) {
+TEST(DrawMaps, ShowsEveryPartOfItsInput) {
   const test::TemporaryFolder folder;
   const auto bytes_of = [&](const MapFigure& figure) {
     draw_maps(figure, folder.file("a.png"));
@@ -42,7 +42,7 @@ TEST(DrawMaps, ShowsEveryPartOfWhatItIsGiven) {
   }));
 }
 
-TEST(DrawMaps, RefusesWhatDoesNotFitTogether) {
+TEST(DrawMaps, RejectsInconsistentInput) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.png");
   EXPECT_THROW(draw_maps(figure_of(0), path), std::invalid_argument);

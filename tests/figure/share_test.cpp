@@ -31,7 +31,7 @@ std::string bytes_of(const ShareFigure& figure, const std::string& ending = ".pn
   return read_file(folder.file("a" + ending));
 }
 
-TEST(DrawShares, ShowsEverything) {
+TEST(DrawShares, ShowsEveryPartOfItsInput) {
   const ShareFigure figure = figure_of(3, 2);
   const std::string whole = bytes_of(figure);
   EXPECT_TRUE(bytes_of(figure, ".svg").find("</svg>") != std::string::npos);
@@ -56,7 +56,7 @@ TEST(DrawShares, ShowsEverything) {
   differs([](ShareFigure& f) { f.groups[1].brackets[0].lines[1] = "p = 0.3"; });
 }
 
-/// Pixels that are not paper.
+/// Pixels that are not white.
 int ink_of(const ShareFigure& figure) {
   const test::TemporaryFolder folder;
   draw_shares(figure, folder.file("a.png"));
@@ -66,12 +66,12 @@ int ink_of(const ShareFigure& figure) {
   return ink;
 }
 
-// Dots at the same height stand side by side: each adds as much ink as the first.
-TEST(DrawShares, EqualDotsCanBeToldApart) {
+// Dots at the same height are placed side by side: each adds as much ink as the first.
+TEST(DrawShares, EqualDotsAreDrawnSideBySide) {
   ShareFigure figure = figure_of(1, 1);
   std::vector<double>& dots = figure.groups[0].bars[0].dots;
   const auto ink_with = [&](std::size_t count) {
-    dots.assign(count, 0.85);  // on paper, above the bar
+    dots.assign(count, 0.85);  // on white paper, above the bar
     return ink_of(figure);
   };
   const int none = ink_with(0), one = ink_with(1) - none;
@@ -82,7 +82,7 @@ TEST(DrawShares, EqualDotsCanBeToldApart) {
   }
 }
 
-TEST(DrawShares, HoldsOneBarAndManyWithLongNames) {
+TEST(DrawShares, FitsOneBarAndManyWithLongNames) {
   const std::string name = "ein sehr langer Name für eine Szene, in der vier Strahlen blasen, ";
   for (const std::size_t names : {1U, 2U, 4U}) {
     for (const std::size_t groups : {1U, 6U}) {
@@ -93,7 +93,7 @@ TEST(DrawShares, HoldsOneBarAndManyWithLongNames) {
   }
 }
 
-TEST(DrawShares, RefusesWhatDoesNotFitTogether) {
+TEST(DrawShares, RejectsInconsistentInput) {
   const auto refuses = [](const auto& change) {
     ShareFigure figure = figure_of(2, 2);
     change(figure);

@@ -1,5 +1,5 @@
 #pragma once
-/// Hand rasters of closed-form shapes.
+/// Hand rasters of shapes given in closed form.
 
 #include <cmath>
 #include <functional>
@@ -17,7 +17,7 @@ inline HandRaster empty_raster(const GridShape& grid) {
   return raster;
 }
 
-/// Rasters a shape by its signed distance [m], moving with one velocity [m/s]; the box is the grid.
+/// Rasters a shape by its signed distance [m], moving at one velocity [m/s]; the box is the grid.
 inline HandRaster shape_raster(const GridShape& grid,
                                const std::function<double(const Vec3&)>& distance,
                                const Vec3& velocity = Vec3::Zero()) {

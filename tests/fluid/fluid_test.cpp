@@ -1,4 +1,4 @@
-/// The fluid by its public interface.
+/// The fluid through its public interface.
 
 #include "prostm/fluid/fluid.hpp"
 
@@ -36,13 +36,13 @@ HandRaster hand_at(const GridShape& grid, double z, double speed) {
       grid, [&](const Vec3& p) { return test::flat_hand(p, z); }, Vec3(0, 0, speed));
 }
 
-/// Returns a hand that bobs at 1 Hz, at step t of a run.
+/// Returns a hand that oscillates vertically at 1 Hz, at step t of a run.
 HandRaster bobbing_hand(const GridShape& grid, int t) {
   const double phase = 2.0 * 3.14159265 * kStep * t;
   return hand_at(grid, 0.18 + 0.02 * std::sin(phase), 0.02 * 2.0 * 3.14159265 * std::cos(phase));
 }
 
-TEST(Fluid, RefusesSettingsOutOfBounds) {
+TEST(Fluid, RejectsSettingsOutOfBounds) {
   WorkerPool pool(1);
   const auto message = [&](auto change) -> std::string {
     FluidSettings settings;
@@ -72,7 +72,7 @@ TEST(Fluid, RefusesSettingsOutOfBounds) {
   EXPECT_TRUE(scene_from_name("still-air").smoke.jets.empty());
 }
 
-TEST(Fluid, RestStaysRest) {
+TEST(Fluid, AirAtRestStaysAtRest) {
   WorkerPool pool(1);
   Fluid fluid(settings_of(32), still_air(), pool);
   const HandRaster hand = hand_at(fluid.grid(), 0.2, 0.0);
@@ -95,8 +95,8 @@ double added_mass(int cells, double radius_in_cells, const Vec3& offset_in_cells
   const HandRaster ball = test::shape_raster(
       g, [&](const Vec3& p) { return test::sphere(p, centre, radius); }, Vec3(0, 0, speed));
   fluid.step(kStep, ball);
-  // the solid's area in a cell is the closed part of its faces across z; the faces of closed cells,
-  // which hold no pressure, are shut
+  // the solid's area in a cell is the closed part of its z faces; the faces of closed cells, which
+  // have no pressure, are shut
   const auto pressure = [&](int i, int j, int k) {
     return static_cast<double>(fluid.pressure()[g.cell_index(i, j, k)]);
   };
@@ -159,7 +159,7 @@ TEST(Fluid, PlumesStaySymmetric) {
   }
 }
 
-TEST(Fluid, SmokeStaysBetweenNoneAndAll) {
+TEST(Fluid, SmokeStaysBetweenZeroAndOne) {
   WorkerPool pool(2);
   FluidSettings settings = settings_of(32);
   settings.buoyancy = 1.0;
@@ -191,7 +191,7 @@ TEST(Fluid, BuoyancyLiftsSmoke) {
   EXPECT_GT(b.velocity(16, 16, 16).z(), a.velocity(16, 16, 16).z() + 0.1);
 }
 
-TEST(Fluid, ThreadsDoNotChangeABit) {
+TEST(Fluid, ThreadsDoNotChangeAnyBit) {
   std::vector<std::vector<float>> pressures, smokes;
   for (const int threads : {1, 2, 3}) {
     WorkerPool pool(threads);
@@ -231,7 +231,7 @@ TEST(Fluid, JacobiWithManySweepsAgreesWithMultigrid) {
   EXPECT_LT(std::sqrt(error / norm), 1e-3);
 }
 
-TEST(Fluid, ReportsTheDivergenceThatItLeaves) {
+TEST(Fluid, ReportsTheRemainingDivergence) {
   WorkerPool pool(2);
   double previous = 1.0;
   for (const int cycles : {1, 2, 4}) {
@@ -247,7 +247,7 @@ TEST(Fluid, ReportsTheDivergenceThatItLeaves) {
   }
 }
 
-TEST(Fluid, TellsTheDivergenceOfEachCell) {
+TEST(Fluid, GivesTheDivergenceOfEachCell) {
   WorkerPool pool(2);
   Fluid fluid(settings_of(32, 1), scene_from_name("one-plume").smoke, pool);
   const HandRaster no_hand = test::empty_raster(fluid.grid());
@@ -304,7 +304,7 @@ TEST(Fluid, EstimatesTheErrorOfThePressureOnHands) {
     }
     std::sort(ratios.begin(), ratios.end());
     const double median = ratios[ratios.size() / 2];
-    // conjugate gradients leave less than is assumed
+    // conjugate gradients leave less than assumed
     EXPECT_GT(median, 0.3) << name_of(settings.solver) << ", " << settings.cycles;
     EXPECT_LT(median, settings.solver == PressureMethod::Mgpcg ? 8.0 : 3.0)
         << name_of(settings.solver) << ", " << settings.cycles;
@@ -313,14 +313,14 @@ TEST(Fluid, EstimatesTheErrorOfThePressureOnHands) {
   EXPECT_EQ(still.step(kStep, test::empty_raster(still.grid())).pressure_error, 0.0);
 }
 
-TEST(Fluid, AHandThatLeftLeavesNoTrace) {
+TEST(Fluid, AHandThatHasLeftHasNoEffect) {
   WorkerPool pool(1);
   const SmokeInflow scene = scene_from_name("one-plume").smoke;
   Fluid seen(settings_of(32), scene, pool), fresh(settings_of(32), scene, pool);
   for (int t = 0; t < 10; ++t) seen.step(kStep, bobbing_hand(seen.grid(), t));
   EXPECT_EQ(std::count(seen.fluid_cells().begin(), seen.fluid_cells().end(), 0) > 50, true);
   const HandRaster none = test::empty_raster(seen.grid());
-  seen.step(kStep, none);  // begins with the hand of the step before
+  seen.step(kStep, none);  // starts with the hand of the previous step
   fresh.copy_state(seen);
   for (int t = 0; t < 3; ++t) {
     EXPECT_EQ(seen.step(kStep, none).solid_cells, 0);
@@ -328,7 +328,7 @@ TEST(Fluid, AHandThatLeftLeavesNoTrace) {
   }
   EXPECT_TRUE(std::equal(seen.pressure().begin(), seen.pressure().end(), fresh.pressure().begin()));
   EXPECT_EQ(std::count(seen.fluid_cells().begin(), seen.fluid_cells().end(), 0), 0);
-  // and the hand may come back
+  // and the hand may return
   EXPECT_GT(seen.step(kStep, bobbing_hand(seen.grid(), 0)).solid_cells, 50);
 }
 
@@ -371,7 +371,7 @@ TEST(Fluid, TheSmokePressesOnTheSideOfTheArray) {
   EXPECT_GT(at(0.18 - 0.013 - g.cell), 3.0F * std::abs(at(0.18 + 0.013 + g.cell)));
 }
 
-TEST(Fluid, AStepInPartsEqualsAStepToTheBit) {
+TEST(Fluid, AStepInPartsEqualsAStepBitForBit) {
   WorkerPool pool(2);
   FluidSettings settings = settings_of(32);
   settings.vorticity = 2.0;
@@ -384,7 +384,7 @@ TEST(Fluid, AStepInPartsEqualsAStepToTheBit) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   const HandRaster none = test::empty_raster(grid);
   for (int t = 0; t < 40; ++t) {
-    // hands anywhere, steps of any length, and sometimes input that causes a reset
+    // hands anywhere, steps of any length, and occasional input that causes a reset
     const double dt =
         t % 13 == 12 ? std::numeric_limits<double>::quiet_NaN() : 0.01 + 0.02 * share(random);
     HandRaster hand = hand_at(grid, 0.10 + 0.15 * share(random), share(random) - 0.5);
@@ -393,7 +393,7 @@ TEST(Fluid, AStepInPartsEqualsAStepToTheBit) {
 
     const FluidStats expected = whole.step(dt, raster);
     parts.prepare(dt);
-    other.step(0.02, hand_at(grid, 0.2, 0.1));  // in between, with the same workers
+    other.step(0.02, hand_at(grid, 0.2, 0.1));  // in between, with the same worker threads
     parts.meet(raster);
     const auto pressure = copy(parts.pressure()), smoke = test::smoke_of(parts);
     const auto free = copy(parts.fluid_cells());
@@ -448,7 +448,7 @@ TEST(Fluid, NonFiniteInputResetsToRest) {
 TEST(Fluid, SweptCellsTakeTheHandsVelocity) {
   WorkerPool pool(1);
   Fluid fluid(settings_of(32), still_air(), pool);
-  // a palm that passed through a slab within one step and has left the box
+  // a palm that has passed through a slab within one step and left the box
   HandRaster raster = test::empty_raster(fluid.grid());
   const GridShape& g = fluid.grid();
   for (int a = 0; a < 3; ++a) {
@@ -468,7 +468,7 @@ TEST(Fluid, SweptCellsTakeTheHandsVelocity) {
   EXPECT_LT(fluid.velocity(28, 16, 16).z(), 0.0);  // air flows back around
 }
 
-TEST(Fluid, StepAllocatesNothing) {
+TEST(Fluid, StepDoesNotAllocate) {
   WorkerPool pool(1);
   FluidSettings settings = settings_of(32);
   settings.vorticity = 1.0;
@@ -482,7 +482,7 @@ TEST(Fluid, StepAllocatesNothing) {
   EXPECT_EQ(guard.allocations(), 0u);
 }
 
-TEST(Fluid, StateOfAnotherGridIsRefused) {
+TEST(Fluid, AStateOfAnotherGridIsRejected) {
   WorkerPool pool(1);
   Fluid a(settings_of(32), still_air(), pool), b(settings_of(48), still_air(), pool);
   EXPECT_THROW(a.copy_state(b), std::invalid_argument);

@@ -1,4 +1,4 @@
-/// Jets that are viscous and guided: their law of similarity, and what each of the two does.
+/// Viscous and guided jets: their similarity law, and the effect of viscosity and guide.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ FluidSettings small(double jet_speed = 1.0) {
 }
 
 // (U, W, ν) × s, τ / s and Δt / s are the same flow, with pressures × s²
-TEST(GuidedJet, IsTheSameFlowAtAnotherSpeed) {
+TEST(GuidedJet, IsSimilarAtAnotherSpeed) {
   WorkerPool pool(2);
   Fluid slow(small(), jet(0.8e-4, 0.1), pool), fast(small(2.0), jet(0.8e-4, 0.1), pool);
   const HandRaster air = test::empty_raster(slow.grid());
@@ -47,7 +47,7 @@ TEST(GuidedJet, IsTheSameFlowAtAnotherSpeed) {
   EXPECT_LT(worst, 1e-4 * most);
 }
 
-/// Speed upwards at a height, on the jet's axis and beside it, after 2 s.
+/// Upward speed at a height, on the jet's axis and off it, after 2 s.
 struct Speeds {
   double axis, beside;
 };
@@ -65,7 +65,7 @@ Speeds speeds_at(double height, double viscosity, double guide_height) {
   return {at(0.01), at(0.05)};
 }
 
-TEST(GuidedJet, KeepsItsSpeedUpToTheGuidesEnd) {
+TEST(GuidedJet, KeepsItsSpeedUpToTheEndOfTheGuide) {
   const Speeds guided = speeds_at(0.08, 0.8e-4, 0.1), freely = speeds_at(0.08, 0.8e-4, 0.0);
   EXPECT_NEAR(guided.axis, 0.66, 0.06);
   EXPECT_LT(std::abs(guided.axis - 0.66), std::abs(freely.axis - 0.66));
@@ -77,7 +77,7 @@ TEST(GuidedJet, WidensWithViscosity) {
   EXPECT_LT(thick.axis, thin.axis);
 }
 
-TEST(GuidedJet, BlowsAnotherWayFromTheNextStepOnAndAllocatesNothing) {
+TEST(GuidedJet, ChangesWithTheNextStepWithoutAllocation) {
   WorkerPool pool(1);
   Fluid changed(small(), jet(0.0, 0.0), pool), fresh(small(), jet(0.0, 0.0), pool);
   SmokeInflow other = jet(0.5e-4, 0.05);
@@ -101,7 +101,7 @@ TEST(GuidedJet, BlowsAnotherWayFromTheNextStepOnAndAllocatesNothing) {
   EXPECT_GT(smoke_over(fresh, Vec2(0.01, -0.02)), 0.5F);
 }
 
-TEST(GuidedJet, RefusesWhatIsOutOfBounds) {
+TEST(GuidedJet, RejectsSettingsOutOfBounds) {
   WorkerPool pool(1);
   EXPECT_THROW(Fluid(small(), jet(-1e-5, 0.0), pool), std::invalid_argument);
   EXPECT_THROW(Fluid(small(), jet(0.0, 6.0), pool), std::invalid_argument);

@@ -1,4 +1,4 @@
-/// A box that moves: what it carries over, and that a hand in it feels the same.
+/// A moving box: the values it carries over, and the pressure on a hand inside.
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@ namespace {
 
 constexpr int kCells = 32;
 
-// against one that looks up each value
-TEST(MovingBox, CarriesValuesToTheirPlace) {
+// compared with code that looks up each value
+TEST(MovingBox, CarriesValuesToTheirPosition) {
   const fluid::PaddedGrid grid{kCells};
   Random random(7);
   for (int round = 0; round < 40; ++round) {
@@ -44,7 +44,7 @@ TEST(MovingBox, CarriesValuesToTheirPlace) {
         }
       }
     }
-    ASSERT_EQ(field[grid.index(-1, 3, 4)], before[grid.index(-1, 3, 4)]) << "the halo stays";
+    ASSERT_EQ(field[grid.index(-1, 3, 4)], before[grid.index(-1, 3, 4)]) << "the halo is unchanged";
   }
 }
 
@@ -94,7 +94,7 @@ void step_and_move(Fluid& fluid, const CellShift& by,
   fluid.settle();
 }
 
-TEST(MovingBox, LetsAHandFeelTheSameWhereverItIs) {
+TEST(MovingBox, LeavesTheForceOnAHandUnchanged) {
   WorkerPool pool(2);
   Fluid still(small(), jet(), pool), moved(small(), jet(), pool);
   const Vec3 home = moved.grid().p_DF;
@@ -105,7 +105,7 @@ TEST(MovingBox, LetsAHandFeelTheSameWhereverItIs) {
   };
   const double settled = run(still, 100);
   run(moved, 100);
-  // to and fro under the plate, so that it is always in the box
+  // back and forth under the plate, which stays in the box
   double worst = 0.0;
   for (const CellShift by : {CellShift{4, 0, 0}, {0, -4, 3}, {-4, 2, 3}, {2, 4, 0}, {0, 0, -4}}) {
     step_and_move(moved, by, plate);
@@ -119,7 +119,7 @@ TEST(MovingBox, LetsAHandFeelTheSameWhereverItIs) {
   EXPECT_GT(settled, 1e-5);
 }
 
-TEST(MovingBox, BeginsAnewAfterAJump) {
+TEST(MovingBox, RestartsAfterAJump) {
   WorkerPool pool(2);
   Fluid fluid(small(), jet(), pool), fresh(small(), jet(), pool);
   const HandRaster air = test::empty_raster(fluid.grid());

@@ -1,4 +1,4 @@
-/// The force of a jet on a plate against the momentum that it brings.
+/// The force of a jet on a plate, compared with the jet's momentum flux.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ void over_columns(const GridShape& grid, const Use& use) {
   }
 }
 
-/// ∫ ρ w² + p over the level plane through the cells at a height [N].
+/// ∫ ρ w² + p over the horizontal plane through the cells at a height [N].
 double momentum_flux(const Fluid& fluid, double height) {
   const GridShape& g = fluid.grid();
   const int k = static_cast<int>(height / g.cell);
@@ -34,8 +34,8 @@ double momentum_flux(const Fluid& fluid, double height) {
   return sum * g.cell * g.cell;
 }
 
-/// ∫ ρ w u_n over the box's sides from kBefore to the plate, u_n outwards where air leaves; what
-/// comes in was at rest [N].
+/// ∫ ρ w u_n over the box's sides from kBefore to the plate, u_n outwards where air leaves; air
+/// that enters was at rest [N].
 double momentum_out(const Fluid& fluid) {
   const GridShape& g = fluid.grid();
   const int last = g.nx - 1;
@@ -54,7 +54,7 @@ double momentum_out(const Fluid& fluid) {
   return fluid.settings().density * sum * g.cell * g.cell;
 }
 
-/// ∫ p over the plate, of the cells that its lower side cuts [N].
+/// ∫ p over the plate, from the cells that its lower side cuts [N].
 double force_on_plate(const Fluid& fluid) {
   const GridShape& g = fluid.grid();
   const int k = static_cast<int>(kPlate / g.cell);
@@ -70,7 +70,7 @@ struct Jet {
   double radius;  // [m]
 };
 
-TEST(Plate, FeelsTheMomentumOfAJet) {
+TEST(Plate, ReceivesTheMomentumOfAJet) {
   for (const double theta : {1.0, 0.6}) {
     for (const Jet& jet : {Jet{48, 0.035}, Jet{64, 0.028}, Jet{80, 0.023}, Jet{64, 0.020}}) {
       WorkerPool pool(2);

@@ -1,4 +1,4 @@
-/// The pressure problem and its solvers, without a fluid.
+/// The pressure equation and its solvers, without a fluid.
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ void fill_random(const PaddedGrid& grid, Field& field, Random& random) {
   }
 }
 
-/// Clears the right side of cells without an equation.
+/// Clears the right-hand side of cells without an equation.
 void clear_closed(const Obstacle& obstacle, PressureSolver& solver) {
   const PaddedGrid& grid = solver.fine().grid;
   for (Index c = grid.index(0, 0, 0); c < grid.index(0, 0, grid.n); ++c) {
@@ -67,7 +67,7 @@ class OpenBox {
  public:
   explicit OpenBox(int n) : n_(n), across_(modes(0.0)), up_(modes(0.5)) {}
 
-  /// @return the pressure for the right side b, both with x fastest.
+  /// @return the pressure for the right-hand side b, both with x fastest.
   std::vector<double> solve(std::vector<double> b) const {
     for (int axis = 0; axis < 3; ++axis) transform(axis, false, b);
     for (int m = 0; m < n_ * n_ * n_; ++m) {
@@ -102,7 +102,7 @@ class OpenBox {
     const std::size_t stride = axis == 0 ? 1 : axis == 1 ? n : n * n;
     std::vector<double> line(n);
     for (std::size_t c = 0; c < field.size(); ++c) {
-      if (c / stride % n != 0) continue;  // not where a line begins
+      if (c / stride % n != 0) continue;  // only where a line begins
       for (std::size_t m = 0; m < n; ++m) {
         line[m] = 0.0;
         for (std::size_t i = 0; i < n; ++i)
@@ -117,7 +117,7 @@ class OpenBox {
   std::vector<double> across_, up_;
 };
 
-/// Relative rms difference to doubles with x fastest.
+/// Relative rms difference to a solution in doubles with x fastest.
 double relative_error(const PaddedGrid& grid, const Field& p, const std::vector<double>& exact) {
   double error = 0.0, norm = 0.0;
   for (int c = 0; c < grid.n * grid.n * grid.n; ++c) {
@@ -129,7 +129,7 @@ double relative_error(const PaddedGrid& grid, const Field& p, const std::vector<
   return std::sqrt(error / norm);
 }
 
-TEST(Pressure, AgreesWithItsCosineTransform) {
+TEST(Pressure, AgreesWithTheCosineTransform) {
   for (const int n : {32, 36, 45, 47, 48, 64, 100}) {
     WorkerPool pool(2);
     PressureSolver solver(n, pool, fast_pressure_kernels());
@@ -150,7 +150,7 @@ TEST(Pressure, AgreesWithItsCosineTransform) {
   }
 }
 
-/// A solver for the ball with a random right side.
+/// A solver for the ball with a random right-hand side.
 struct BallProblem {
   BallProblem(int n, int threads)
       : pool(threads),
@@ -193,7 +193,7 @@ TEST(Pressure, ConjugateGradientsDoNotDependOnThreads) {
       0.0);
 }
 
-TEST(Pressure, ConjugateGradientsStopWhereNothingIsLeftToDo) {
+TEST(Pressure, ConjugateGradientsStopAtTheSolution) {
   BallProblem problem(32, 1);
   problem.solver.right_side().fill(0.0F);
   problem.cg.solve(3);
@@ -242,7 +242,7 @@ TEST(Pressure, JacobiReachesTheSamePressure) {
   cycles.v_cycles(20);
   sweeps.jacobi(4000, false);
   EXPECT_LT(largest_difference(cycles.fine().grid, cycles.pressure(), sweeps.pressure(), n), 2e-4);
-  // warm sweeps continue from there; cold ones start anew
+  // warm sweeps continue from there; cold sweeps start from zero
   sweeps.jacobi(1, true);
   EXPECT_LT(largest_difference(cycles.fine().grid, cycles.pressure(), sweeps.pressure(), n), 2e-4);
   sweeps.jacobi(1, false);
@@ -287,7 +287,7 @@ TEST(Pressure, VectorKernelsAgreeWithPlainOnes) {
 }
 
 TEST(Advection, VectorKernelsAgreeWithPlainOnes) {
-  // 9 cells a step is too rough for blocks; rows of 45 are not of whole vectors
+  // 9 cells per step are too rough for blocks; rows of 45 are not a multiple of the vector length
   for (const auto& [n, speed] :
        {std::pair(32, 0.3), std::pair(32, 2.0), std::pair(32, 9.0), std::pair(45, 2.0)}) {
     const PaddedGrid grid{n};
@@ -308,7 +308,7 @@ TEST(Advection, VectorKernelsAgreeWithPlainOnes) {
       for (int axis = -1; axis < 3; ++axis) {
         const Placement place = axis < 0 ? centre_placement(n) : face_placement(n, axis);
         out[kind].emplace_back(grid);
-        // the same displacement for both: in rough fields a rounding error in it moves the sample
+        // the same displacement for both: in rough fields a rounding error of it moves the sample
         kernels[kind]->sample(grid, place, moved[1], field.data(), out[kind].back().data(), 0,
                               axis == 2 ? n + 1 : n);
       }
@@ -417,7 +417,7 @@ TEST(Projection, LeavesNoDivergenceAndNoFlowThroughWalls) {
   EXPECT_NEAR(reported, largest, 1e-6);
   EXPECT_NEAR(sum, squares, 1e-2 * squares);
 
-  // no fluid passes a shut face, which moves with the wall
+  // no fluid passes a closed face, which moves with the wall
   int shut = 0;
   for (int axis = 0; axis < 3; ++axis) {
     for (int k = 1; k < n; ++k) {
@@ -444,7 +444,7 @@ TEST(Obstacle, SealedPocketsAreClosed) {
   obstacle.update(test::shape_raster(unit_grid(n), shell), level);
   EXPECT_TRUE(obstacle.closed(level.grid.index(n / 2, n / 2, n / 2)));
   const int sealed = obstacle.closed_cells();
-  // a hole reconnects the inside with the outside
+  // a hole reconnects inside and outside
   const auto holed = [&](const Vec3& p) {
     const double bore = std::hypot(p.x() - centre.x(), p.y() - centre.y()) - 0.08;
     return p.z() > centre.z() ? std::max(shell(p), -bore) : shell(p);
@@ -452,7 +452,7 @@ TEST(Obstacle, SealedPocketsAreClosed) {
   obstacle.update(test::shape_raster(unit_grid(n), holed), level);
   EXPECT_FALSE(obstacle.closed(level.grid.index(n / 2, n / 2, n / 2)));
   EXPECT_LT(obstacle.closed_cells(), sealed - 1000);
-  // nothing remains after the hand is gone
+  // nothing remains once the hand is gone
   obstacle.update(test::empty_raster(unit_grid(n)), level);
   EXPECT_EQ(obstacle.closed_cells(), 0);
   for (int axis = 0; axis < 3; ++axis) {

@@ -15,7 +15,7 @@ GridShape box() {
   return {kCells, kCells, kCells, 0.01, Vec3(-0.08, -0.08, 0.0)};
 }
 
-/// Returns a jet about the centre of cell (10, 4).
+/// Returns a jet centred on cell (10, 4).
 SmokeInflow one_jet(double vent_speed) {
   SmokeInflow scene;
   scene.jets.push_back({Vec2(0.025, -0.035), 0.03, 2.0});
@@ -23,7 +23,7 @@ SmokeInflow one_jet(double vent_speed) {
   return scene;
 }
 
-TEST(Surroundings, BlowTheJetsAndTheVentThroughTheFloor) {
+TEST(Surroundings, JetsAndVentBlowThroughTheFloor) {
   const PaddedGrid grid{kCells};
   Field w(grid, -7.0F);
   Surroundings(box(), one_jet(0.25)).set_floor(w);
@@ -31,11 +31,11 @@ TEST(Surroundings, BlowTheJetsAndTheVentThroughTheFloor) {
   EXPECT_FLOAT_EQ(w[grid.index(13, 4, 0)], 0.25F + 2.0F * std::exp(-1.0F));
   EXPECT_EQ(w[grid.index(10, 13, 0)], 0.25F);
   EXPECT_EQ(w[grid.index(0, 15, 0)], 0.25F);
-  EXPECT_EQ(w[grid.index(10, 4, 1)], -7.0F);  // nothing else
+  EXPECT_EQ(w[grid.index(10, 4, 1)], -7.0F);  // all other faces
   EXPECT_EQ(w[grid.index(16, 4, 0)], -7.0F);
 }
 
-TEST(Surroundings, LetInFreshSmokeAndWhatTheFloorIsLike) {
+TEST(Surroundings, SupplyFreshSmokeAndTheFloorsConditions) {
   const PaddedGrid grid{kCells};
   for (const double vent_speed : {0.0, 0.25}) {
     Field smoke(grid, 0.5F);
@@ -46,7 +46,7 @@ TEST(Surroundings, LetInFreshSmokeAndWhatTheFloorIsLike) {
   }
 }
 
-TEST(Surroundings, CalmWhatFlowsInThroughAnOpenSide) {
+TEST(Surroundings, CalmTheInflowThroughAnOpenSide) {
   const PaddedGrid grid{kCells};
   Field velocity[3] = {Field(grid, 1.0F), Field(grid, 0.0F), Field(grid, 3.0F)};
   for (int j = 0; j < kCells; ++j) velocity[1][grid.index(5, j, 7)] = 4.0F;
@@ -62,7 +62,7 @@ TEST(Surroundings, CalmWhatFlowsInThroughAnOpenSide) {
   EXPECT_EQ(velocity[2][grid.index(8, 8, kCells)], 3.0F);
   EXPECT_EQ(velocity[2][grid.index(0, 5, 0)], 3.0F);  // the jets set the floor's faces
 
-  // in through y = 0, where the cell loses its other velocities too
+  // in through y = 0, where the cell loses its other velocity components too
   EXPECT_EQ(velocity[1][grid.index(5, 0, 7)], 0.0F);
   EXPECT_EQ(velocity[0][grid.index(5, 0, 7)], 0.0F);
   EXPECT_EQ(velocity[0][grid.index(6, 0, 7)], 0.0F);
@@ -76,18 +76,18 @@ TEST(Surroundings, GuideAJetUpToACeiling) {
   inflow.guide_height = 0.06;
   inflow.guide_time = 0.1;
   const Surroundings around(box(), inflow);
-  const float hold = 1.0F - std::exp(-0.2F);  // of a step of 20 ms
+  const float hold = 1.0F - std::exp(-0.2F);  // for a step of 20 ms
   Field velocity[3] = {Field(grid, 1.0F), Field(grid, 1.0F), Field(grid, 0.25F)};
   WorkerPool pool(2);
   around.guide(pool, 0.02, 0.045, velocity);
-  // on the axis: w goes to the floor's, u and v to nothing, below 45 mm
+  // on the axis, below 45 mm: w approaches the floor's value, u and v approach 0
   for (int k = 1; k < 8; ++k) {
     EXPECT_NEAR(velocity[2][grid.index(10, 4, k)], k < 5 ? 0.25F + hold * 2.0F : 0.25F, 1e-6F) << k;
     const float keep = k < 4 ? 1.0F - hold : 1.0F;
     EXPECT_NEAR(velocity[0][grid.index(10, 4, k)], keep, 0.03F) << k;
     EXPECT_NEAR(velocity[1][grid.index(10, 5, k)], keep, 0.03F) << k;
   }
-  // the floor and the air far from the jet are left alone
+  // the floor and the air far from the jet are unchanged
   EXPECT_EQ(velocity[2][grid.index(10, 4, 0)], 0.25F);
   EXPECT_EQ(velocity[0][grid.index(1, 14, 2)], 1.0F);
 
@@ -97,7 +97,7 @@ TEST(Surroundings, GuideAJetUpToACeiling) {
   EXPECT_EQ(still[2][grid.index(10, 4, 2)], 1.0F);
 }
 
-TEST(Surroundings, RefuseAJetOutOfBounds) {
+TEST(Surroundings, RejectAJetOutOfBounds) {
   SmokeInflow scene = one_jet(0.0);
   scene.jets[0].radius = 0.0;
   EXPECT_THROW(Surroundings(box(), scene), std::invalid_argument);

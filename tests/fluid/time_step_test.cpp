@@ -1,4 +1,4 @@
-/// The error of a step of 20 ms on small things, and the two settings against it.
+/// The error of a step of 20 ms for small objects, and the two settings that reduce it.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ FluidSettings small(double theta, int substeps) {
   return settings;
 }
 
-/// A finger across the jet, as wide as a pad.
+/// A finger across the jet, as wide as a fingertip.
 HandRaster finger(const GridShape& grid) {
   return test::shape_raster(grid, [](const Vec3& p) {
     const Vec3 q(p.x(), std::max(p.y() - 0.003, 0.0), p.z() - 0.071);
@@ -68,7 +68,7 @@ double settled_force(double theta, int substeps) {
   return force;
 }
 
-TEST(TimeStep, ThetaAndSubstepsTakeTheSplittingErrorAway) {
+TEST(TimeStep, ThetaAndSubstepsRemoveTheSplittingError) {
   const double exact = settled_force(0.6, 4);
   EXPECT_GT(exact, 1e-5);
   const double implicit = std::abs(settled_force(1.0, 1) / exact - 1.0),
@@ -79,13 +79,13 @@ TEST(TimeStep, ThetaAndSubstepsTakeTheSplittingErrorAway) {
   EXPECT_LT(centred, 0.03);
 }
 
-// sub-steps among a still finger are steps
-TEST(TimeStep, SubstepsAreSteps) {
+// sub-steps around a finger at rest are like steps
+TEST(TimeStep, SubstepsEqualSteps) {
   WorkerPool pool(2);
   for (const double theta : {1.0, 0.6}) {
     Fluid steps(small(theta, 1), jet(), pool), halves(small(theta, 2), jet(), pool);
     const HandRaster raster = finger(steps.grid());
-    // the first sub-step meets nothing yet
+    // before the first sub-step there is no flow
     halves.step(0.02, raster);
     steps.step(0.01, test::empty_raster(steps.grid()));
     steps.step(0.01, raster);
@@ -106,8 +106,8 @@ TEST(TimeStep, SubstepsAreSteps) {
   }
 }
 
-/// Pressures 5 mm before and behind a ball that starts at once, over two steps: their difference,
-/// which drives the air around it [Pa].
+/// Pressures 5 mm in front of and behind a ball that starts suddenly, over two steps: their
+/// difference, which drives the air around it [Pa].
 std::array<double, 2> starting_ball(double theta, int substeps) {
   WorkerPool pool(2);
   Fluid fluid(small(theta, substeps), {}, pool);
@@ -127,8 +127,8 @@ std::array<double, 2> starting_ball(double theta, int substeps) {
   return out;
 }
 
-// a jerk is felt once, and as strongly as in one implicit step, not to and fro from step to step
-TEST(TimeStep, AJerkIsFeltOnce) {
+// a jerk acts once, as strongly as in one implicit step, and does not alternate between steps
+TEST(TimeStep, AJerkActsOnce) {
   const auto [first, second] = starting_ball(1.0, 1);
   EXPECT_GT(first, 0.03);
   for (const auto& [theta, substeps] :
@@ -139,7 +139,7 @@ TEST(TimeStep, AJerkIsFeltOnce) {
   }
 }
 
-// where the centred form would not be stable it becomes implicit
+// where the centred form would be unstable it becomes implicit
 TEST(TimeStep, ThetaIsStableAtAnySpeed) {
   WorkerPool pool(2);
   for (const double speed : {0.5, 1.0, 1.5, 2.0, 3.0}) {
@@ -155,7 +155,7 @@ TEST(TimeStep, ThetaIsStableAtAnySpeed) {
         most = std::max(most, std::abs(static_cast<double>(p)));
     }
     const double u = 0.6 * speed;
-    EXPECT_LT(most, 2.0 * 0.5 * settings.density * u * u) << "the pressure where a jet is stopped";
+    EXPECT_LT(most, 2.0 * 0.5 * settings.density * u * u) << "stagnation pressure of a jet";
   }
 }
 

@@ -1,4 +1,4 @@
-/// Hands of whole cells, as ref. [4] has them.
+/// Hands of whole cells, as in ref. [4].
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kStep = 0.02;
 
-/// The added mass of a sphere of whole cells that starts at once, over the mass of the air that it
-/// displaces.
+/// The added mass of a sphere of whole cells that starts suddenly, relative to the mass of the
+/// displaced air.
 double added_mass(double radius_cells, const Vec3& offset) {
   WorkerPool pool(2);
   FluidSettings settings;
@@ -57,7 +57,7 @@ TEST(VoxelHand, HasAboutHalfItsVolumeOfAddedMass) {
   }
 }
 
-// where a hand of fractions changes with every movement, one of voxels stays until it has moved on
+// a hand of cell fractions changes with every motion, a voxel hand only after a whole cell
 TEST(VoxelHand, MovesByWholeCells) {
   WorkerPool pool(1);
   FluidSettings settings;

@@ -98,7 +98,7 @@ struct Errors {
   int velocities = 0;
 };
 
-/// Compares the vector kernels for one body with its own functions.
+/// Compares the vector kernels for one body with the body's own functions.
 template <class Body>
 void compare(const Body& body, int cubes, Random& random, Errors& errors) {
   BodySet bodies;
@@ -115,7 +115,7 @@ void compare(const Body& body, int cubes, Random& random, Errors& errors) {
       const SurfacePoint expected = body.query(point(cube, c));
       const double found = static_cast<double>(nearest.distance[c]);
       errors.distance = std::max(errors.distance, std::abs(found - expected.distance));
-      // deep inside, the nearest skin point jumps from side to side
+      // deep inside, the nearest skin point jumps from one side to the other
       if (expected.distance < -0.002) continue;
       const Vec3 velocity = Eigen::Vector3f(v[0][c], v[1][c], v[2][c]).cast<double>();
       errors.velocity = std::max(errors.velocity, (velocity - expected.velocity).norm());
@@ -124,7 +124,7 @@ void compare(const Body& body, int cubes, Random& random, Errors& errors) {
   }
 }
 
-/// Runs f with each set of vectors of this processor, the widest last.
+/// Runs f with each vector target of this processor, the widest last.
 template <class F>
 void with_each_target(F&& f) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
@@ -144,11 +144,11 @@ TEST(BodyKernels, VectorsAgreeWithTheBodies) {
         compare(RoundCone(a, b), 5, random, cone);
         compare(SphereTriangle(a, b, c), 5, random, triangle);
       }
-      // a point in single precision is accurate only to some nanometres
+      // a point in single precision is accurate only to a few nanometres
       EXPECT_LT(cone.distance, 1e-7) << "kind " << kind;
       EXPECT_LT(triangle.distance, 1e-7) << "kind " << kind;
       EXPECT_GT(triangle.velocities, 10000) << "kind " << kind;
-      // along a hidden corner several skin points are equally near
+      // along a hidden corner several skin points are equally close
       EXPECT_LT(cone.velocity, 1e-4) << "kind " << kind;
       EXPECT_LT(triangle.velocity, kind == 8 ? 0.1 : 5e-3) << "kind " << kind;
     }
@@ -179,7 +179,7 @@ class MixedBodies {
   std::array<SphereTriangle, kEach> triangles_;
 };
 
-TEST(BodyKernels, VectorsFindTheNearestOfManyAsThePlainOnesDo) {
+TEST(BodyKernels, VectorsFindTheNearestOfManyAsPlainCodeDoes) {
   with_each_target([] {
     Random random(12);
     for (int n = 0; n < 300; ++n) {
@@ -191,7 +191,7 @@ TEST(BodyKernels, VectorsFindTheNearestOfManyAsThePlainOnesDo) {
       fast_body_kernels().nearest(bodies.set, list, cube, fast);
       for (unsigned c = 0; c < 8; ++c) {
         EXPECT_NEAR(fast.distance[c], plain.distance[c], 1e-7F);
-        // if two bodies are equally near, either may be chosen
+        // if two bodies are equally close, either may be chosen
         const auto body = static_cast<std::size_t>(fast.body[c]);
         EXPECT_NEAR(bodies.distance(body, point(cube, c)), static_cast<double>(plain.distance[c]),
                     1e-7);
@@ -238,7 +238,7 @@ TEST(BodyKernels, CullingKeepsEveryBodyThatIsNearestSomewhere) {
   with_each_target(check);
 }
 
-TEST(BodyKernels, PlainVelocitiesAreTheBodiesOwn) {
+TEST(BodyKernels, PlainVelocitiesEqualTheBodiesOwn) {
   Random random(14);
   const MixedBodies bodies(random);
   const CubeCorners cube = random_cube(random);

@@ -33,7 +33,7 @@ bool same(const HandRaster& a, const HandRaster& b) {
          a.velocity[1] == b.velocity[1] && a.velocity[2] == b.velocity[2] && a.swept == b.swept;
 }
 
-TEST(HandRaster, DistancesAreTheShapesWithinTheBandAndFarBeyond) {
+TEST(HandRaster, DistancesMatchTheShapeWithinTheBandAndAreFarBeyond) {
   WorkerPool pool(1);
   HandRasteriser rasteriser(kGrid);
   const HandFrame frame = scripted_frame(11.6);
@@ -62,7 +62,7 @@ TEST(HandRaster, DistancesAreTheShapesWithinTheBandAndFarBeyond) {
   EXPECT_GT(near, 5000);
 }
 
-TEST(HandRaster, VelocitiesAreThoseOfTheNearestSkin) {
+TEST(HandRaster, VelocitiesMatchTheNearestSkin) {
   WorkerPool pool(1);
   HandRasteriser rasteriser(kGrid);
   HandFrame frame = scripted_frame(4.0);
@@ -83,7 +83,7 @@ TEST(HandRaster, VelocitiesAreThoseOfTheNearestSkin) {
         if (std::abs(point.distance) < kGrid.cell) {
           ++cells;
           error += (v - point.velocity).norm();
-          // beside a crease the neighbouring body's skin point may be taken, a few cells away at
+          // near a crease the neighbouring body's skin point may be used, a few cells away at
           // most
           if ((v - point.velocity).norm() > 1e-5) ++far_off;
           EXPECT_LT((v - point.velocity).norm(), 10.0 * 0.03);
@@ -99,8 +99,8 @@ TEST(HandRaster, VelocitiesAreThoseOfTheNearestSkin) {
 }
 
 TEST(HandRaster, NothingTunnelsAtOneMetrePerSecond) {
-  // a hand moving edgewise by more than its thickness between frames: every cell on its way must be
-  // solid now, or marked
+  // a hand moves edgewise by more than its thickness between frames: every cell on its way must
+  // be solid now, or marked
   WorkerPool pool(2);
   const HandFrame start = scripted_frame(4.0);
   for (const Vec3& velocity : {Vec3(1, 0, 0), Vec3(0, 0.6, 0.8), Vec3(0, 0, -1)}) {
@@ -168,7 +168,7 @@ TEST(HandRaster, SweptCellsAreFreeNowAndOnTheWay) {
   EXPECT_GT(swept, 500);
 }
 
-TEST(HandRaster, HandsThatRestOrAppearSweepNothing) {
+TEST(HandRaster, HandsAtRestOrNewSweepNothing) {
   WorkerPool pool(1);
   HandRasteriser rasteriser(kGrid);
   const auto swept = [&] {
@@ -187,7 +187,7 @@ TEST(HandRaster, HandsThatRestOrAppearSweepNothing) {
   EXPECT_EQ(swept(), 0);
 }
 
-TEST(HandRaster, TwoHandsAreTheUnionOfBoth) {
+TEST(HandRaster, TwoHandsGiveTheUnionOfBoth) {
   WorkerPool pool(1);
   HandFrame both = moved(scripted_frame(4.0), Vec3(-0.08, 0, 0), Vec3(0, 0, 1));
   HandFrame second = moved(scripted_frame(4.0), Vec3(0.07, 0, 0.02), Vec3(0, 0, -1));
@@ -210,7 +210,7 @@ TEST(HandRaster, TwoHandsAreTheUnionOfBoth) {
   }
 }
 
-TEST(HandRaster, LeavesNoTraceOfFormerFrames) {
+TEST(HandRaster, EarlierFramesHaveNoEffect) {
   WorkerPool pool(1);
   HandRasteriser used(kGrid), fresh(kGrid);
   for (const double t : {4.0, 6.9, 11.5, 15.3}) used.rasterise(scripted_frame(t), pool);
@@ -232,7 +232,7 @@ TEST(HandRaster, DoesNotDependOnTheNumberOfThreads) {
   }
 }
 
-TEST(HandRaster, TakesHandsAnywhereAndIgnoresOnesThatAreNotFinite) {
+TEST(HandRaster, AcceptsHandsAnywhereAndIgnoresNonFiniteOnes) {
   WorkerPool pool(1);
   HandRasteriser rasteriser(kGrid);
   const HandFrame frame = scripted_frame(4.0);
@@ -252,7 +252,7 @@ TEST(HandRaster, TakesHandsAnywhereAndIgnoresOnesThatAreNotFinite) {
   EXPECT_TRUE(rasteriser.raster().box.empty());
 }
 
-TEST(HandRaster, AllocatesNothing) {
+TEST(HandRaster, DoesNotAllocate) {
   WorkerPool pool(1);
   HandRasteriser rasteriser(kGrid);
   const HandFrame a = scripted_frame(4.0), b = moved(a, Vec3(0.05, 0.02, 0), Vec3(1, 0, 0));
@@ -261,7 +261,7 @@ TEST(HandRaster, AllocatesNothing) {
   EXPECT_EQ(guard.allocations(), 0u);
 }
 
-TEST(HandRaster, RefusesWhatIsNoGridOrNoBand) {
+TEST(HandRaster, RejectsInvalidGridsAndBands) {
   EXPECT_THROW(HandRasteriser(kGrid, 1.0), std::invalid_argument);
   EXPECT_THROW(HandRasteriser(kGrid, 17.0), std::invalid_argument);
   EXPECT_THROW(HandRasteriser(GridShape(), 3.0), std::invalid_argument);

@@ -80,14 +80,14 @@ TEST(HandShape, QueryAgreesWithDistanceAndItsGradient) {
     }
     if (point.distance < 0.0) continue;
     ++outside;
-    // between two bodies the distance has a crease, which spoils the difference quotient
+    // the distance has a crease between two bodies, where the difference quotient fails
     if ((gradient - point.normal).norm() > 1e-4) ++creases;
   }
   EXPECT_GT(outside, 2000);
   EXPECT_LT(creases, 5);
 }
 
-TEST(HandShape, MovesAndTurnsWithTheHand) {
+TEST(HandShape, MovesAndRotatesWithTheHand) {
   const Hand hand = scripted_hand(4.0);
   const HandShape shape(hand);
   Pose X_DT = Pose::Identity();
@@ -113,7 +113,7 @@ TEST(HandShape, MovesAndTurnsWithTheHand) {
   }
 }
 
-TEST(HandShape, KnowsTipsAndFingersFromThePalm) {
+TEST(HandShape, DistinguishesTipsFingersAndPalm) {
   for (const double t : {1.0, 4.0, 11.5}) {
     const Hand hand = scripted_hand(t);
     const HandShape shape(hand);
@@ -160,7 +160,7 @@ TEST(HandShape, TheRegionOfAPointIsThatOfItsNearestBody) {
   for (const int count : counted) EXPECT_GT(count, 200);
 }
 
-TEST(HandShape, SettingAllocatesNothing) {
+TEST(HandShape, SettingDoesNotAllocate) {
   const Hand hand = scripted_hand(4.0);
   HandShape shape;
   test::HeapGuard guard;

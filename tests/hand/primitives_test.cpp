@@ -18,8 +18,8 @@ CornerSphere random_corner(Random& random) {
   return {random_vector(random, 0.05), random.uniform(0.003, 0.03), random_vector(random, 1.0)};
 }
 
-/// Computes min over q of |p − q| − r(q) by sampling the spheres whose hull is the body: an upper
-/// bound, too large by at most the spacing of the samples.
+/// Computes min over q of |p − q| − r(q) by sampling the spheres whose hull is the body. This is an
+/// upper bound, too large by at most the sample spacing.
 double by_samples(const Vec3& p, const CornerSphere& a, const CornerSphere& b,
                   const CornerSphere& c, int n) {
   double nearest = 1e30;
@@ -41,7 +41,7 @@ TEST(RoundCone, OfEqualRadiiIsACapsule) {
   EXPECT_NEAR(cone.distance(Vec3(0.02, 0.0, 0.0)), -0.01, 1e-15);
 }
 
-TEST(RoundCone, ContainingOneSphereInTheOtherIsTheLargerSphere) {
+TEST(RoundCone, WithOneSphereInsideTheOtherIsTheLargerSphere) {
   const Vec3 p(0.07, -0.02, 0.05);
   const CornerSphere large{Vec3(0.01, 0, 0), 0.03, Vec3(1, 0, 0)},
       small{Vec3(0.02, 0, 0), 0.01, Vec3(0, 1, 0)};
@@ -52,7 +52,7 @@ TEST(RoundCone, ContainingOneSphereInTheOtherIsTheLargerSphere) {
   }
 }
 
-TEST(RoundCone, OfNoLengthIsASphereEvenAtItsCentre) {
+TEST(RoundCone, OfZeroLengthIsASphereEvenAtItsCentre) {
   const CornerSphere sphere{Vec3(0.1, 0.2, 0.3), 0.02, Vec3(0, 0, 1)};
   const RoundCone cone(sphere, sphere);
   EXPECT_DOUBLE_EQ(cone.distance(sphere.centre), -0.02);
@@ -82,7 +82,7 @@ TEST(SphereTriangle, OfEqualRadiiIsAThickTriangle) {
   EXPECT_NEAR(triangle.query(Vec3(0.02, 0.03, -0.05)).normal.z(), -1.0, 1e-12);
 }
 
-TEST(SphereTriangle, OfCornersInLineIsTheirRoundCone) {
+TEST(SphereTriangle, OfCollinearCornersIsTheirRoundCone) {
   const CornerSphere a{Vec3(0, 0, 0), 0.01, {}}, b{Vec3(0.05, 0, 0), 0.015, {}},
       c{Vec3(0.1, 0, 0), 0.02, {}};
   const SphereTriangle triangle(a, b, c), point(a, a, a);
@@ -130,13 +130,13 @@ void expect_gradient_is_normal(const Body& body, const Vec3& p) {
   const SurfacePoint point = body.query(p);
   EXPECT_NEAR(point.distance, body.distance(p), 1e-12);
   EXPECT_NEAR(point.normal.norm(), 1.0, 1e-12);
-  // within a difference of a crease the normal belongs to one side, and the difference sees both
+  // within a step of a crease the normal belongs to one side, but the difference spans both
   if ((gradient - point.normal).norm() > 1e-4) {
-    EXPECT_LT(body.distance(p), 0.0) << "outside a convex body the distance has no crease";
+    EXPECT_LT(body.distance(p), 0.0) << "outside a convex body there is no crease";
   }
 }
 
-TEST(Bodies, TheirNormalsAreUnitGradients) {
+TEST(Bodies, NormalsAreUnitGradients) {
   Random random(3);
   for (int n = 0; n < 300; ++n) {
     const CornerSphere a = random_corner(random), b = random_corner(random),
@@ -152,8 +152,8 @@ TEST(Bodies, TheirNormalsAreUnitGradients) {
 }
 
 TEST(Bodies, ASkinPointMovesWithItsVelocity) {
-  // the corners move for a moment: the skin's normal speed is minus the rate of the distance at a
-  // fixed point
+  // the corners move for a short time: the skin's normal speed is minus the rate of the distance at
+  // a fixed point
   Random random(4);
   constexpr double kTime = 1e-7;
   for (int n = 0; n < 500; ++n) {

@@ -59,7 +59,7 @@ TEST(ArrayFile, RoundTripsAnyArray) {
   }
   for (const TransducerArray& array : {usx_array(), autd3_array()}) {
     const std::string text = array_to_json(array);
-    EXPECT_EQ(text.find("normals"), text.npos);  // all face +z
+    EXPECT_EQ(text.find("normals"), text.npos);  // all normals are +z
     const TransducerArray back = array_from_json(text, "a.json");
     expect_same(back, array);
     EXPECT_EQ(back.normal, array.normal);
@@ -81,7 +81,7 @@ TEST(ArrayFile, ReadsEveryMember) {
   EXPECT_TRUE(array.normal[1].isApprox(Vec3(0.6, 0.0, 0.8), 1e-15));
 }
 
-TEST(ArrayFile, NormalsAndTheIntervalCanBeLeftOut) {
+TEST(ArrayFile, NormalsAndTheIntervalAreOptional) {
   auto json = nlohmann::json::parse(example());
   json.erase("normals");
   json.erase("amplitude_interval_pa_m");
@@ -92,7 +92,7 @@ TEST(ArrayFile, NormalsAndTheIntervalCanBeLeftOut) {
   EXPECT_EQ(array.amplitude_high, 3.4);
 }
 
-TEST(ArrayFile, NormalsThatAreNearlyUnitVectorsAreMadeSo) {
+TEST(ArrayFile, NearlyUnitNormalsAreNormalised) {
   const auto with = [](const char* normal) {
     return array_from_json(test::replaced(example(), "[0, 0, 1]", normal), "a.json").normal[0];
   };
@@ -101,7 +101,7 @@ TEST(ArrayFile, NormalsThatAreNearlyUnitVectorsAreMadeSo) {
   EXPECT_NEAR(with("[0.577, 0.577, 0.577]").norm(), 1.0, 1e-15);
 }
 
-TEST(ArrayFile, SaysWhatIsWrong) {
+TEST(ArrayFile, ReportsErrors) {
   test::expect_refused(
       example(), "a.json",
       {
@@ -111,7 +111,7 @@ TEST(ArrayFile, SaysWhatIsWrong) {
           {"40000", "100001", "\"frequency_hz\" is 100001; it must be from 20000 to 100000"},
           {"4.5", "0", "\"radius_mm\" is 0; it must be from 0.1 to 50"},
           {"\"piston\"", "\"horn\"",
-           R"("directivity" is no directivity; it must be "piston", "t4010a1" or "omni")"},
+           R"("directivity" is not a directivity; it must be "piston", "t4010a1" or "omni")"},
           {"\"amplitude_pa_m\"", "\"amplitude\"", "no member \"amplitude\"; known are"},
           {"\"amplitude_pa_m\": 3.4,", "", "\"amplitude_pa_m\" is missing; it must be"},
           {"3.4", "0", "\"amplitude_pa_m\" is 0; it must be from"},
@@ -135,7 +135,7 @@ TEST(ArrayFile, SaysWhatIsWrong) {
       [](const std::string& text) { array_from_json(text, "a.json"); });
 }
 
-TEST(ArrayFile, RefusesMoreTransducersThanThereMayBe) {
+TEST(ArrayFile, RejectsTooManyTransducers) {
   const auto with = [](int count) {
     auto json = nlohmann::json::parse(example());
     json.erase("normals");

@@ -63,7 +63,7 @@ TEST(DigitisedFigure, GivesPathsTheTargetsPressureTimesTheGain) {
   EXPECT_NEAR(plan.paths[1].length, 0.12, 1e-15);
 }
 
-TEST(DigitisedFigure, SaysWhatIsWrong) {
+TEST(DigitisedFigure, ReportsErrors) {
   test::expect_refused(
       kFigure, "fig.json",
       {{"\"fig2\"", "\"fig3\"", "\"fig2\" is missing; it must be a digitised figure"},
@@ -89,7 +89,7 @@ TEST(DigitisedFigure, SaysWhatIsWrong) {
       [](const std::string& text) { read(text); });
 }
 
-TEST(DigitisedFigure, RefusesTooManyPathsAndPoints) {
+TEST(DigitisedFigure, RejectsTooManyPathsAndPoints) {
   const auto sentence = [](const std::function<void(nlohmann::json&)>& change) {
     auto json = nlohmann::json::parse(kFigure);
     change(json["fig2"]["refined_paths_mm"]);

@@ -29,7 +29,7 @@ inline Plan triangle_plan() {
   return plan;
 }
 
-/// Compares everything except the planes' poses, to the bit.
+/// Compares everything except the planes' poses, exactly.
 inline void expect_same_raster(const TargetField& a, const TargetField& b) {
   EXPECT_EQ(a.rows, b.rows);
   EXPECT_EQ(a.cols, b.cols);
@@ -41,7 +41,7 @@ inline void expect_same_raster(const TargetField& a, const TargetField& b) {
   EXPECT_EQ(a.weight, b.weight);
 }
 
-/// Returns `document` with its first `old_text` replaced.
+/// Returns `document` with the first occurrence of `old_text` replaced.
 inline std::string replaced(std::string document, const std::string& old_text,
                             const std::string& new_text) {
   const std::size_t at = document.find(old_text);
@@ -52,15 +52,15 @@ inline std::string replaced(std::string document, const std::string& old_text,
   return document.replace(at, old_text.size(), new_text);
 }
 
-/// A piece of a document, its faulty replacement, and a part of the expected message.
+/// A piece of a document, its faulty replacement, and part of the expected message.
 struct Wrong {
   const char* old_text;
   const char* new_text;
   const char* sentence;
 };
 
-/// Breaks `document` in each way. @param read reads a document under the name `name`, with which
-/// each message must start.
+/// Checks each fault in `document`. @param read reads a document under the name `name`, with which
+/// each message must begin.
 inline void expect_refused(const std::string& document, const std::string& name,
                            std::initializer_list<Wrong> wrongs,
                            const std::function<void(const std::string&)>& read) {

@@ -1,4 +1,4 @@
-/// Fields as arrays (NPY) and pictures (PNG).
+/// Fields as arrays (NPY) and images (PNG).
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -84,7 +84,7 @@ TEST(FieldNpy, ReadsBothOrdersAndVersions) {
   }
 }
 
-TEST(FieldNpy, TakesNanAsNoSkinAlsoASignallingOne) {
+TEST(FieldNpy, TreatsNanAsNoSkinEvenIfSignalling) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const TargetField field =
       field_from_npy(npy(dictionary("<f8", "(1, 3)"), bytes_of<double>({1, kNan, 0})), "a", 5.0);
@@ -96,7 +96,7 @@ TEST(FieldNpy, TakesNanAsNoSkinAlsoASignallingOne) {
   EXPECT_THAT(signalling.skin, ElementsAre(0, 0));
 }
 
-TEST(FieldNpy, ReadsFloat16ToItsEnds) {
+TEST(FieldNpy, ReadsTheExtremesOfFloat16) {
   // the smallest number, the largest below 1, the largest, and two NaN
   const TargetField field =
       field_from_npy(npy(dictionary(">f2", "(1, 5)"),
@@ -112,7 +112,7 @@ TEST(FieldNpy, ReadsFloat16ToItsEnds) {
               HasSubstr("is inf"));
 }
 
-TEST(FieldNpy, TakesAFrameOfAnArrayOfThreeDimensions) {
+TEST(FieldNpy, TakesAFrameOfAThreeDimensionalArray) {
   const std::string row_major = bytes_of<double>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
   const std::string column_major = bytes_of<double>({1, 7, 4, 10, 2, 8, 5, 11, 3, 9, 6, 12});
   for (const bool fortran : {false, true}) {
@@ -127,7 +127,7 @@ TEST(FieldNpy, TakesAFrameOfAnArrayOfThreeDimensions) {
     EXPECT_THAT(refusal(2), HasSubstr("has no frame 2; it has 2 frames"));
     EXPECT_THAT(refusal(-1), HasSubstr("has no frame -1"));
   }
-  // axes of length 1 are left out
+  // axes of length 1 are dropped
   for (const char* shape : {"(1, 2, 3)", "(2, 3, 1)", "(1, 2, 3, 1)"}) {
     const TargetField field =
         field_from_npy(npy(dictionary("<f8", shape), row_major.substr(0, 48)), "a", 5.0);
@@ -141,7 +141,7 @@ TEST(FieldNpy, TakesAFrameOfAnArrayOfThreeDimensions) {
               HasSubstr("holds one field; leave out --frame"));
 }
 
-TEST(FieldNpy, TakesASolversRoundingForZero) {
+TEST(FieldNpy, TreatsRoundingErrorsOfASolverAsZero) {
   const auto read = [](std::initializer_list<double> values) {
     return field_from_npy(npy(dictionary("<f8", "(1, 2)"), bytes_of<double>(values)), "a", 5.0)
         .pressure;
@@ -152,7 +152,7 @@ TEST(FieldNpy, TakesASolversRoundingForZero) {
   EXPECT_THAT(input_error([&] { read({-1e-18, 0.0}); }), HasSubstr("is -1e-18"));
 }
 
-TEST(FieldNpy, SaysWhatIsWrong) {
+TEST(FieldNpy, ReportsErrors) {
   const std::string data = bytes_of<double>({1, 2, 3, 4, 5, 6});
   const auto sentence = [&](const std::string& bytes, double cell = 5.0) {
     return input_error([&] { field_from_npy(bytes, "a.npy", cell); });
@@ -219,7 +219,7 @@ TEST(FieldPng, KeepsAllSixteenBits) {
   EXPECT_THAT(field.pressure, ElementsAre(7152.0 * 7 / (10000.0 * 65535.0)));
 }
 
-TEST(FieldPng, TakesATransparentColourAsNoSkin) {
+TEST(FieldPng, TreatsATransparentColourAsNoSkin) {
   std::string eight = test::png(3, 1, 0, 8, std::string("\x00\x80\xff", 3));
   eight.insert(33, test::png_chunk("tRNS", std::string("\x00\x80", 2)));
   EXPECT_THAT(field_from_png(eight, "a", 4.0).skin, ElementsAre(1, 0, 1));
@@ -228,7 +228,7 @@ TEST(FieldPng, TakesATransparentColourAsNoSkin) {
   EXPECT_THAT(field_from_png(sixteen, "a", 4.0).skin, ElementsAre(0, 1));
 }
 
-TEST(FieldPng, TakesAlphaZeroAsNoSkinAndIgnoresItOtherwise) {
+TEST(FieldPng, TreatsAlphaZeroAsNoSkinAndIgnoresOtherAlpha) {
   const std::string samples("\xff\x00\x80\xff\xff\x80\x80\x40", 8);  // grey, alpha
   const TargetField field = field_from_png(test::png(4, 1, 4, 8, samples), "a.png", 4.0);
   EXPECT_THAT(field.skin, ElementsAre(0, 1, 1, 1));
@@ -237,7 +237,7 @@ TEST(FieldPng, TakesAlphaZeroAsNoSkinAndIgnoresItOtherwise) {
                           testing::DoubleNear(1.0, 1e-12), testing::DoubleNear(0.5, 0.01)));
 }
 
-TEST(ReadField, SizesFieldsByTheirWidthAndInvertsPictures) {
+TEST(ReadField, ScalesFieldsByTheirWidthAndInvertsImages) {
   const test::TemporaryFolder folder;
   const std::string picture = folder.file("a.png"), array = folder.file("a.npy");
   write_file(picture, test::png(4, 1, 4, 8, std::string("\xff\x00\x00\xff\xff\xff\x33\xff", 8)));
@@ -255,13 +255,13 @@ TEST(ReadField, SizesFieldsByTheirWidthAndInvertsPictures) {
   };
   EXPECT_THAT(refusal({}), HasSubstr("--width-mm"));
   EXPECT_THAT(refusal({.cell_mm = 5.0, .width_mm = 5.0}), HasSubstr("exclude each other"));
-  EXPECT_THAT(refusal({.width_mm = 5.0, .invert = true}), HasSubstr("is no picture"));
+  EXPECT_THAT(refusal({.width_mm = 5.0, .invert = true}), HasSubstr("is not a picture"));
   EXPECT_THAT(refusal({.width_mm = -5.0}), HasSubstr("--width-mm -5 over 2 columns is -2.5"));
   EXPECT_THAT(refusal({.width_mm = std::numeric_limits<double>::quiet_NaN()}),
               HasSubstr("from 0.01 to 1000 mm"));
 }
 
-TEST(FieldPng, SaysWhatIsWrong) {
+TEST(FieldPng, ReportsErrors) {
   const std::string good = test::png(40, 30, 0, 8, std::string(1200, '\x12'));
   const auto sentence = [](const std::string& bytes, double cell = 5.0) {
     return input_error([&] { field_from_png(bytes, "a.png", cell); });
@@ -270,11 +270,11 @@ TEST(FieldPng, SaysWhatIsWrong) {
   EXPECT_THAT(sentence("GIF89a and so on, not a PNG"), HasSubstr("is not a PNG picture"));
   EXPECT_THAT(sentence("{\"format\": 1}"), HasSubstr("is JSON, not a PNG picture"));
   EXPECT_THAT(sentence(good.substr(0, 20)), HasSubstr("is not a PNG picture"));
-  EXPECT_THAT(sentence(good.substr(0, good.size() / 2)), HasSubstr("cut off or broken"));
-  std::string palette = good.substr(16, 13);  // colours by number, but without a palette
+  EXPECT_THAT(sentence(good.substr(0, good.size() / 2)), HasSubstr("truncated or damaged"));
+  std::string palette = good.substr(16, 13);  // indexed colours, but no palette
   palette[9] = 3;
   EXPECT_THAT(sentence(good.substr(0, 8) + test::png_chunk("IHDR", palette) + good.substr(33)),
-              AllOf(HasSubstr("cut off or broken"), Not(HasSubstr("memory"))));
+              AllOf(HasSubstr("truncated or damaged"), Not(HasSubstr("memory"))));
   std::string huge = good;
   huge.replace(16, 8, std::string("\0\0\x4e\x20\0\0\x4e\x20", 8));
   EXPECT_THAT(sentence(huge), HasSubstr("20000 x 20000"));

@@ -31,13 +31,13 @@ TEST(FieldJson, ReadsEveryMember) {
   EXPECT_THAT(field.pressure, testing::ElementsAre(0, 1.5, 0, 2e-3, 4, 0.25));
   EXPECT_THAT(field.skin, testing::ElementsAre(1, 1, 0, 1, 1, 1));
   EXPECT_EQ(field.height[4], 0.0045);
-  EXPECT_TRUE(field.height[2] == 0.002 || field.height[2] == -0.006);  // from a neighbour with skin
+  EXPECT_TRUE(field.height[2] == 0.002 || field.height[2] == -0.006);  // from a cell with skin
   EXPECT_THAT(field.weight, testing::ElementsAre(1, 7, 0, 0, 1.5, 2));
   EXPECT_TRUE(
       (field.X_DP * Vec3(0.01, 0.02, 0.03)).isApprox(Vec3(0.001 - 0.02, 0.002 + 0.01, 0.21)));
 }
 
-TEST(FieldJson, LiesAboveTheArrayWithoutAPlane) {
+TEST(FieldJson, LiesAboveTheArrayByDefault) {
   const TargetField field = field_from_json(
       R"({"format":"prostm-field/1","cell_mm":1,"origin_mm":[0,0],"rows":1,"cols":1,"pressure":[[3]]})",
       "a");
@@ -58,7 +58,7 @@ TEST(FieldJson, RoundTripsExactly) {
   }
 }
 
-TEST(FieldJson, TakesAxesThatAreNearlyOrthonormal) {
+TEST(FieldJson, AcceptsNearlyOrthonormalAxes) {
   const TargetField field =
       field_from_json(test::replaced(kField, "[0, 1, 0], \"y\": [-1, 0, 0]",
                                      "[0, 1.0000004, 0], \"y\": [-1, 3e-7, 0]"),
@@ -69,7 +69,7 @@ TEST(FieldJson, TakesAxesThatAreNearlyOrthonormal) {
       0.0, 1e-15);
 }
 
-TEST(FieldJson, SaysWhatIsWrong) {
+TEST(FieldJson, ReportsErrors) {
   test::expect_refused(
       kField, "a.json",
       {
@@ -120,7 +120,7 @@ TEST(FieldJson, SaysWhatIsWrong) {
       [](const std::string& text) { field_from_json(text, "a.json"); });
 }
 
-TEST(FieldJson, SaysWhereJsonBreaks) {
+TEST(FieldJson, ReportsThePositionOfASyntaxError) {
   const std::string text = kField;
   EXPECT_THAT(input_error([&] { field_from_json(text.substr(0, text.size() / 2), "a.json"); }),
               HasSubstr("ends too early"));
@@ -134,7 +134,7 @@ TEST(FieldJson, SaysWhereJsonBreaks) {
       parse_json("[\"" + std::string(100, '[') + "\\\"" + std::string(100, '{') + "\"]", "a"));
 }
 
-TEST(FieldJson, RefusesNumbersThatNoDoubleHolds) {
+TEST(FieldJson, RejectsNumbersOutsideTheRangeOfDoubles) {
   const test::WithoutTraps scope;
   EXPECT_THAT(input_error([&] {
                 field_from_json(test::replaced(kField, "4, 0.25", "1e999, 0.25"), "a.json");
@@ -142,7 +142,7 @@ TEST(FieldJson, RefusesNumbersThatNoDoubleHolds) {
               HasSubstr("the number '1e999' is out of range"));
 }
 
-TEST(FieldJson, EveryCutAndFlipIsRefusedOrValid) {
+TEST(FieldJson, EveryCutAndFlipIsRejectedOrValid) {
   Random random(8);
   const std::string text = kField;
   for (int trial = 0; trial < 3000; ++trial) {
@@ -163,7 +163,7 @@ TEST(FieldJson, EveryCutAndFlipIsRefusedOrValid) {
   }
 }
 
-TEST(ToMilli, ReadsBackAsTheSameLengthWithFewDigits) {
+TEST(ToMilli, ReadsBackExactlyWithFewDigits) {
   EXPECT_EQ(to_milli(0.0318), 31.8);
   EXPECT_EQ(to_milli(0.14), 140.0);
   Random random(2);
@@ -173,7 +173,7 @@ TEST(ToMilli, ReadsBackAsTheSameLengthWithFewDigits) {
   }
 }
 
-TEST(ReadField, ChoosesByTheEndingAndChecksOptions) {
+TEST(ReadField, ChoosesTheFormatByExtensionAndChecksOptions) {
   const test::TemporaryFolder folder;
   const std::string json = folder.file("a.json");
   write_file(json, kField);
@@ -186,7 +186,7 @@ TEST(ReadField, ChoosesByTheEndingAndChecksOptions) {
   EXPECT_THAT(input_error([&] { read_field(json, options); }), HasSubstr("leave out --frame"));
   EXPECT_THAT(input_error([&] { read_field(folder.file("a.VTK")); }), HasSubstr("z, y, x"));
   EXPECT_THAT(input_error([&] { read_field(folder.file("a.tiff")); }),
-              HasSubstr("of no known kind"));
+              HasSubstr("of an unknown kind"));
   write_file(folder.file("a.npy"), "x");
   EXPECT_THAT(input_error([&] { read_field(folder.file("a.npy")); }), HasSubstr("--cell-mm"));
   EXPECT_THAT(input_error([&] { read_field(folder.file("b.json")); }), HasSubstr("cannot be read"));

@@ -24,7 +24,7 @@ TEST(FociFile, ReadsPlacesAndPressures) {
   EXPECT_EQ(foci.pressure[0], 300.0);
 }
 
-TEST(FociFile, DrivesTellAllThatIsNeededToComputeThePressuresAgain) {
+TEST(FociFile, DrivesHoldAllThatReproducesThePressures) {
   const FociFile foci = foci_from_json(kTwo, "two.json");
   const TransducerArray array = autd3_array();
   const Propagation g = propagation_to(array, Medium{}, foci.position);
@@ -49,7 +49,7 @@ TEST(FociFile, DrivesTellAllThatIsNeededToComputeThePressuresAgain) {
   }
 }
 
-TEST(FociFile, RefusesWhatIsNot) {
+TEST(FociFile, RejectsInvalidFiles) {
   for (
       const char* text :
       {R"({"format": "prostm-foci/1", "foci": []})", R"({"format": "prostm-foci/1"})",

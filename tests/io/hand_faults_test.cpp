@@ -1,4 +1,4 @@
-/// Faults in hand recordings: what each of them costs, and what is said about a file that is bad.
+/// Faults in hand recordings: what each of them discards, and how bad files are reported.
 
 #include <gmock/gmock.h>
 
@@ -20,7 +20,7 @@ using testing::HasSubstr;
 constexpr std::size_t kFrames = 6;
 constexpr double kStep = 9e-3;  // [s]
 
-/// Returns frames of one right hand, or of a left and a right one, that move.
+/// Returns frames of a moving right hand, or of a left and a right one.
 std::vector<HandFrame> moving_hands(std::size_t hands) {
   std::vector<HandFrame> frames;
   for (std::size_t f = 0; f < kFrames; ++f) {
@@ -54,7 +54,7 @@ json neutral(const Hand& hand) {
           {"r", r}};
 }
 
-/// A recording as its frames, each a JSON value.
+/// A recording as a list of frames, each a JSON value.
 struct Document {
   bool leap = false;
   std::vector<json> frames;
@@ -83,7 +83,7 @@ Document document_of(bool leap, std::size_t hands) {
   return out;
 }
 
-/// A fault of a frame, or of hand `h` in it.
+/// A fault in a frame, or in hand `h` of it.
 struct Fault {
   HandFault cause;
   std::function<void(Document&, std::size_t f, std::size_t h, std::mt19937&)> make;
@@ -196,7 +196,7 @@ std::vector<Fault> faults_of_leap_hands() {
   };
 }
 
-/// Checks that a recording is the good one without frame `f`, or without hand `h` of it.
+/// Checks that a recording equals the good one without frame `f`, or without hand `h` of it.
 void expect_rest(const HandRecording& got, const HandRecording& good, std::size_t f,
                  std::optional<std::size_t> h) {
   ASSERT_EQ(got.frames.size(), good.frames.size() - (h ? 0 : 1));
@@ -217,7 +217,7 @@ void expect_rest(const HandRecording& got, const HandRecording& good, std::size_
   }
 }
 
-TEST(HandFaults, ASingleFaultCostsItsHandOrItsFrame) {
+TEST(HandFaults, ASingleFaultDiscardsItsHandOrItsFrame) {
   std::mt19937 random(1);
   const std::vector<Fault> of_frames = faults_of_frames(), of_neutral = faults_of_neutral_hands(),
                            of_leap = faults_of_leap_hands();
@@ -248,14 +248,14 @@ TEST(HandFaults, ASingleFaultCostsItsHandOrItsFrame) {
   }
 }
 
-TEST(HandFaults, MoreThanAQuarterOfBadFramesIsRefused) {
+TEST(HandFaults, MoreThanAQuarterOfBadFramesIsRejected) {
   Document two = document_of(false, 1);
   two.frames[1]["t"] = two.frames[2]["hands"] = nullptr;
   EXPECT_THAT(test::input_error([&] { two.read(); }),
               HasSubstr("dropped: 2 of 6 frames and 0 of 4 hands, for 1 unreadable, 1 time"));
 }
 
-TEST(HandFaults, UnitsThatNoTrackerHasAreNamed) {
+TEST(HandFaults, ImplausibleUnitsAreReported) {
   const auto error = [](bool leap, double time, double length) {
     Document d = document_of(leap, 1);
     for (json& frame : d.frames) {
@@ -283,18 +283,18 @@ TEST(HandFaults, UnitsThatNoTrackerHasAreNamed) {
   EXPECT_THAT(error(false, 1.0, 1e3), HasSubstr("positions seem to be in millimetres"));
 }
 
-TEST(HandFaults, MicrosecondsSince1970AreTimes) {
+TEST(HandFaults, MicrosecondsSince1970AreAccepted) {
   Document d = document_of(true, 1);
   for (json& frame : d.frames)
     frame["timestamp"] = frame["timestamp"].get<std::int64_t>() + 1'700'000'000'000'000;
   EXPECT_NEAR(d.read().frames.back().time, kStep * (kFrames - 1), 1e-6);
 }
 
-TEST(HandFaults, OtherConventionsAreNamed) {
+TEST(HandFaults, OtherConventionsAreReported) {
   using Change = std::function<void(json & hand)>;
   const auto error = [](const Change& change) {
     Document d = document_of(false, 1);
-    // a tilted hand, since a level one looks alike in some conventions
+    // a tilted hand, since a level one looks the same in some conventions
     const Quat turn(Eigen::AngleAxisd(0.5, Vec3(1.0, 2.0, 0.5).normalized()));
     for (json& frame : d.frames) {
       json& hand = frame["hands"][0];
@@ -344,7 +344,7 @@ TEST(HandFaults, OtherConventionsAreNamed) {
               HasSubstr("given with y and z exchanged"));
 }
 
-TEST(HandFaults, LeapFramesMayBeInListsOrLinesWithAMark) {
+TEST(HandFaults, LeapFramesMayBeListsOrLinesWithAByteOrderMark) {
   const Document d = document_of(true, 2);
   json lists = json::array({json::array({{{"version", 6}}})}), frames = json::array();
   for (const json& frame : d.frames) {
@@ -363,7 +363,7 @@ TEST(HandFaults, LeapFramesMayBeInListsOrLinesWithAMark) {
   }
 }
 
-TEST(HandFaults, TypesOfFingersFollowFromTheirIds) {
+TEST(HandFaults, FingerTypesFollowFromTheirIds) {
   Document d = document_of(true, 2);
   for (json& frame : d.frames) {
     for (json& finger : frame["pointables"]) finger.erase("type");
@@ -371,7 +371,7 @@ TEST(HandFaults, TypesOfFingersFollowFromTheirIds) {
   EXPECT_FALSE(d.read().reading.faults.any()) << d.read().reading.faults.first;
 }
 
-TEST(HandFaults, RecordingsOfStrangers) {
+TEST(HandFaults, RecordingsOfOtherProgramsAreRead) {
   const auto read = [](const std::string& name) {
     return read_hand_recording(test::shared_file("data/found/" + name + ".json")).reading;
   };

@@ -72,7 +72,7 @@ TEST(HandsJsonl, ReadsFramesWithAndWithoutHands) {
   EXPECT_EQ(hand.velocity[kPalm], Vec3::Zero());
 }
 
-TEST(HandsJsonl, TellsAfterEachFrameHowMuchHasBeenRead) {
+TEST(HandsJsonl, ReportsTheProgressAfterEachFrame) {
   const std::string text = jsonl({neutral_header(), neutral_frame(5.0), neutral_frame(6.0)});
   std::vector<std::size_t> done;
   hands_from_jsonl(text, "x", [&](std::size_t bytes, std::size_t all) {
@@ -84,7 +84,7 @@ TEST(HandsJsonl, TellsAfterEachFrameHowMuchHasBeenRead) {
   EXPECT_EQ(done[1], text.size());
 }
 
-TEST(HandsJsonl, SaysWhatIsWrongAndWhere) {
+TEST(HandsJsonl, ReportsErrorsWithTheirPosition) {
   const auto with = [](const char* key, const json& value) {
     json frame = neutral_frame(0.1);
     frame["hands"][0][key] = value;
@@ -129,10 +129,10 @@ TEST(HandsJsonl, SaysWhatIsWrongAndWhere) {
   expect_jsonl_error(jsonl({neutral_header(), three}), "ids must differ");
 }
 
-TEST(HandsJsonl, ANumberThatNoDoubleHoldsIsAnError) {
+TEST(HandsJsonl, ANumberOutsideTheRangeOfDoublesIsAnError) {
   std::string text = jsonl({neutral_header(), neutral_frame(0.0)});
   text.replace(text.find("0.009"), 5, "1e999");
-  // the standard library's conversion overflows, which this program's traps would report as a fault
+  // the standard library's conversion overflows, which the program's traps would treat as a fault
   fedisableexcept(FE_OVERFLOW);
   expect_jsonl_error(text, "out of range");
   feclearexcept(FE_ALL_EXCEPT);
@@ -145,8 +145,8 @@ TEST(HandsJsonl, DeepNestingIsAnError) {
   expect_error([&] { hands_from_leap_json(text, "x"); }, "nested deeper");
 }
 
-/// Returns a Leap frame with a right hand, palm down, in the form of old recordings: without carps,
-/// bases and wrist.
+/// Returns a Leap frame with a right hand, palm down, as in old recordings: without carps, bases
+/// and wrist.
 json leap_frame(std::int64_t microseconds) {
   json pointables = json::array();
   for (int f = 0; f < 5; ++f) {
@@ -175,7 +175,7 @@ json leap_recording() {
           {"frames", {leap_frame(1000000), leap_frame(1010000)}}};
 }
 
-TEST(LeapJson, ReadsMillimetresAndMicrosecondsAndRebuildsWhatIsMissing) {
+TEST(LeapJson, ReadsMillimetresAndMicrosecondsAndRebuildsMissingBones) {
   const HandRecording recording = hands_from_leap_json(leap_recording().dump(), "x");
   ASSERT_EQ(recording.frames.size(), 2u);
   EXPECT_NEAR(recording.frames[1].time, 0.01, 1e-12);
@@ -196,7 +196,7 @@ TEST(LeapJson, ReadsMillimetresAndMicrosecondsAndRebuildsWhatIsMissing) {
   }
 }
 
-TEST(LeapJson, KnowsTheSideWithoutATypeAndMirrorsLeftHands) {
+TEST(LeapJson, FindsTheSideWithoutATypeAndMirrorsLeftHands) {
   json right = leap_recording(), left = leap_recording();
   for (json& frame : right["frames"]) frame["hands"][0].erase("type");
   for (json& frame : left["frames"]) {
@@ -217,7 +217,7 @@ TEST(LeapJson, KnowsTheSideWithoutATypeAndMirrorsLeftHands) {
   }
 }
 
-TEST(LeapJson, PackedFramesAreTheSameFrames) {
+TEST(LeapJson, PackedFramesEqualPlainFrames) {
   // formatVersion 2 of LeapJS Playback: frames[0] names the members of the arrays in the others
   const json plain = leap_recording();
   const json fingers = {"id",          "handId",      "type",        "mcpPosition",
@@ -254,7 +254,7 @@ TEST(LeapJson, PackedFramesAreTheSameFrames) {
   expect_leap_error(ragged, "the packing structure in frames[0] names 3");
 }
 
-TEST(LeapJson, SaysWhatIsWrongAndWhere) {
+TEST(LeapJson, ReportsErrorsWithTheirPosition) {
   const auto with = [](const char* path, const json& value) {
     json document = leap_recording();
     document[json::json_pointer(path)] = value;
@@ -278,7 +278,7 @@ TEST(LeapJson, SaysWhatIsWrongAndWhere) {
   expect_leap_error(with("/frames/0/hands/0/type", "both"), "must be \"left\" or \"right\"");
 }
 
-TEST(HandFile, TellsTheFormatsApartByTheirContent) {
+TEST(HandFile, DetectsTheFormatFromTheContent) {
   const test::TemporaryFolder folder;
   const auto read = [&](const std::string& text) {
     write_file(folder.file("a"), text);
@@ -332,7 +332,7 @@ TEST(HandFile, LeapRecordingsAgreeWithTheirNeutralConversions) {
     EXPECT_LT(d.position, 1e-5);
     EXPECT_LT(d.radius, 1e-4);
     EXPECT_LT(d.time, 1e-9);
-    // the other file's conversion transferred its orientations by a cruder rule
+    // the converter of the other file transferred the orientations by a coarser rule
     if (std::string(name) == "finger-tap-54fps") {
       EXPECT_LT(std::max(d.angle, d.thumb_angle), 0.01);
     }
@@ -358,7 +358,7 @@ TEST(HandFile, StrippedBonesOfAFullRecordingAreRebuilt) {
   EXPECT_LT(d.thumb_angle, 0.05);
 }
 
-TEST(HandFile, BonesThatWereRecordedElsewhereAreRebuiltFromTheTemplate) {
+TEST(HandFile, MissingBonesAreRebuiltFromTheTemplate) {
   // this recording has metacarpals, and the template was not measured on it
   PROSTM_NEEDS_SHARED("data/hands/pinch-57fps.hands.jsonl");
   const HandRecording recorded =
@@ -367,7 +367,7 @@ TEST(HandFile, BonesThatWereRecordedElsewhereAreRebuiltFromTheTemplate) {
   const auto mm = [](const Vec3& p) { return json{1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z()}; };
   for (const HandFrame& frame : recorded.frames) {
     const Hand& hand = frame.hands.at(0);
-    // the file lacks the palm's position, which follows from the knuckle of the middle finger
+    // the file lacks the palm's position, which follows from the middle finger's knuckle
     const Eigen::Matrix3d R_TP = hand.orientation[kWrist].toRotationMatrix();
     const double span = (hand.position[kLittleProximal] - hand.position[kIndexProximal]).norm();
     const Vec3 palm =

@@ -1,4 +1,4 @@
-/// An array that prostm does not know by name, added to the table of a program of its own.
+/// An array that prostm does not know, added to the table by another program.
 
 #include <gmock/gmock.h>
 
@@ -36,7 +36,7 @@ TEST(OwnArray, IsKnownByItsName) {
             "usx (default), autd3, row, or an array file (.json)");
 }
 
-TEST(OwnArray, IsNamedToWhoMisspellsIt) {
+TEST(OwnArray, IsSuggestedForAMisspelling) {
   const std::vector<ArrayKind> kinds = kinds_with_row();
   const std::string sentence = test::input_error([&] { array_from_name("rows", kinds); });
   EXPECT_THAT(sentence, HasSubstr("it must be usx, autd3, row, or an array file"));

@@ -66,7 +66,7 @@ TEST(PlanFile, RoundTripsPathsAndRaster) {
   }
 }
 
-TEST(PlanFile, SaysHowThePlanCameAboutInTheFormatsUnits) {
+TEST(PlanFile, DescribesThePlanInTheUnitsOfTheFormat) {
   Random random(3);
   PlanStats stats;
   stats.kmeans = 123e-6;
@@ -108,7 +108,7 @@ TEST(PlanFile, SaysHowThePlanCameAboutInTheFormatsUnits) {
   EXPECT_NEAR(path["points_mm"][0][1].get<double>(), 1e3 * plan.paths[0].points[0].y(), 1e-9);
 }
 
-TEST(PlanFile, SaysNothingThatItWasNotTold) {
+TEST(PlanFile, OmitsFieldsThatWereNotSet) {
   const auto json = nlohmann::json::parse(example());
   for (const char* key : {"settings", "preset", "metrics", "stage_us", "foci"})
     EXPECT_FALSE(json.contains(key)) << key;
@@ -147,7 +147,7 @@ TEST(PlanFile, RoundTripsFoci) {
   }
 }
 
-TEST(PlanFile, APhaseIsWrittenWhereThereIsOne) {
+TEST(PlanFile, WritesAPhaseOnlyIfThereIsOne) {
   EXPECT_EQ(foci_example().find("phase"), std::string::npos);
   auto json = nlohmann::json::parse(foci_example());
   json["foci"][1]["phase"] = 0.375;
@@ -172,7 +172,7 @@ TEST(PlanFile, APhaseIsWrittenWhereThereIsOne) {
               HasSubstr("has foci and loop_ms; only paths have a loop"));
 }
 
-TEST(PlanFile, ALoopIsWrittenWhereThereIsOne) {
+TEST(PlanFile, WritesALoopOnlyIfThereIsOne) {
   EXPECT_EQ(example().find("loop_ms"), std::string::npos);
   auto json = nlohmann::json::parse(example());
   EXPECT_EQ(plan_from_json(json.dump(), "p.json").plan.loop, 0.0);
@@ -193,7 +193,7 @@ TEST(PlanFile, ALoopIsWrittenWhereThereIsOne) {
   EXPECT_THAT(refused("20"), HasSubstr("\"loop_ms\" is \"20\"; it must be a number"));
 }
 
-TEST(PlanFile, SaysWhatIsWrongWithFoci) {
+TEST(PlanFile, ReportsErrorsInFoci) {
   test::expect_refused(foci_example(), "p.json",
                        {{"\"foci\"", "\"paths\": [], \"foci\"", "has both foci and paths"},
                         {"\"foci\"", "\"focii\"", "\"paths\" is missing"},
@@ -207,11 +207,11 @@ TEST(PlanFile, SaysWhatIsWrongWithFoci) {
               HasSubstr("has 9 foci; it must have at most 8"));
 }
 
-TEST(PlanFile, WritesTheSameBytesForTheSamePlan) {
+TEST(PlanFile, IsByteIdenticalForTheSamePlan) {
   EXPECT_EQ(example(), example());
 }
 
-TEST(PlanFile, SaysWhatIsWrong) {
+TEST(PlanFile, ReportsErrors) {
   test::expect_refused(
       example(), "p.json",
       {
@@ -235,14 +235,14 @@ TEST(PlanFile, SaysWhatIsWrong) {
       [](const std::string& text) { plan_from_json(text, "p.json"); });
 }
 
-TEST(PlanFile, APeriodThatIsLeftOutIsThatOfFlatSkin) {
+TEST(PlanFile, AMissingPeriodIsThatOfFlatSkin) {
   auto json = nlohmann::json::parse(example());
   json["paths"][0].erase("period_ms");
   const FocalPath path = plan_from_json(json.dump(), "p.json").plan.paths[0];
   EXPECT_DOUBLE_EQ(path.period, path.length / path.speed);
 }
 
-TEST(PlanFile, RefusesTooManyPathsAndPoints) {
+TEST(PlanFile, RejectsTooManyPathsAndPoints) {
   const auto changed = [](const std::function<void(nlohmann::json&)>& change) {
     auto json = nlohmann::json::parse(example());
     change(json);

@@ -1,5 +1,5 @@
 #pragma once
-/// The smallest PNG writer: stored (uncompressed) deflate blocks, any colour type. Independent of
+/// A minimal PNG writer: stored (uncompressed) deflate blocks, any colour type. Independent of
 /// the reader.
 
 #include <array>

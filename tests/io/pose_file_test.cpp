@@ -16,7 +16,7 @@ constexpr const char* kPose = R"({"format": "prostm-pose/1", "position_mm": [0, 
 TEST(PoseFile, ReadsAPoseAndWritesItBack) {
   const Calibration read = pose_from_json(kPose, "p.json");
   EXPECT_TRUE(read.X_DT.translation().isApprox(Vec3(0, 0.121, -0.0035)));
-  // a quarter turn about x, for a tracker that lies on the desk
+  // a quarter turn about x, for a tracker on the desk
   EXPECT_LT((read.X_DT.linear() - default_tracker_pose().linear()).norm(), 1e-7);
   EXPECT_EQ(read.rms, 0.0);
 
@@ -42,7 +42,7 @@ TEST(PoseFile, ReadsAPoseAndWritesItBack) {
             1e-15);
 }
 
-TEST(PoseFile, NamesAreKnownOrRefused) {
+TEST(PoseFile, NamesAreKnownOrRejected) {
   EXPECT_TRUE(tracker_pose_from_name("centre").isApprox(default_tracker_pose()));
   EXPECT_TRUE(tracker_pose_from_name("ultraleap-kit").isApprox(ultraleap_kit_pose()));
   EXPECT_EQ(tracker_pose_from_name("ultraleap-usi-kit").translation(), Vec3(0.0, -0.089, 0.0));
@@ -53,7 +53,7 @@ TEST(PoseFile, NamesAreKnownOrRefused) {
   EXPECT_THROW(tracker_pose_from_name("none.json"), InputError);
 }
 
-TEST(PoseFile, SaysWhatIsWrong) {
+TEST(PoseFile, ReportsErrors) {
   const auto expect = [](const std::string& text, const std::string& part) {
     EXPECT_THAT(test::input_error([&] { pose_from_json(text, "p.json"); }),
                 testing::HasSubstr(part));

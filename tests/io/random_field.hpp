@@ -9,8 +9,8 @@
 
 namespace prostm::test {
 
-/// Returns skin with gaps, pressures over many magnitudes, heights, weights in half of the fields,
-/// and a tilted plane; all lengths are exact in files.
+/// Returns skin with gaps, pressures over many orders of magnitude, heights, weights in half of the
+/// fields, and a tilted plane; all lengths are exact in files.
 inline TargetField random_field(Random& random) {
   TargetField field;
   field.resize(1 + random.below(20), 1 + random.below(20));
@@ -34,7 +34,7 @@ inline TargetField random_field(Random& random) {
   const Quat q =
       Quat(random.normal(), random.normal(), random.normal(), random.normal()).normalized();
   field.X_DP.linear() = q.toRotationMatrix();
-  // a field's plane faces in the array's direction
+  // the field's plane has its normal along the array's
   if (field.X_DP.linear()(2, 2) < 0.0) field.X_DP.rotate(Quat(0.0, 1.0, 0.0, 0.0));
   field.X_DP.translation() = Vec3(length(), length(), length());
   return field;

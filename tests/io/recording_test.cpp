@@ -137,7 +137,7 @@ TEST(Recording, ReadsThePlanOfAFrame) {
               HasSubstr("no frame 4; it has 4 frames"));
 }
 
-TEST(Recording, ReadsWhatTheGateSaid) {
+TEST(Recording, ReadsTheVerdictsOfTheGate) {
   const test::TemporaryFolder folder;
   const RecordingReader reader(record(folder.file("r.h5"), random_frames(4)));
   EXPECT_FALSE(reader.gate(0));
@@ -181,21 +181,21 @@ TEST(Recording, ReadsThePlanOfFoci) {
   EXPECT_EQ(read->plan.foci[0].pressure, 3.5);
   EXPECT_EQ(read->plan.foci[0].phase, 0.625);
   EXPECT_EQ(read->sigma, made.sigma);
-  EXPECT_THAT(input_error([&] { static_cast<void>(reader.plan(1)); }), HasSubstr("is broken"));
+  EXPECT_THAT(input_error([&] { static_cast<void>(reader.plan(1)); }), HasSubstr("is damaged"));
 }
 
-TEST(Recording, SaysThatItIsStillBeingWritten) {
+TEST(Recording, ReportsThatItIsStillBeingWritten) {
   const test::TemporaryFolder folder;
   const std::string path = record(folder.file("r.h5"), random_frames(3));
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  ASSERT_EQ(::flock(fd, LOCK_EX | LOCK_NB), 0);  // as HDF5 does to write
+  ASSERT_EQ(::flock(fd, LOCK_EX | LOCK_NB), 0);  // as HDF5 does for writing
   EXPECT_THAT(input_error([&] { const RecordingReader reader(path); }),
               HasSubstr("is open for writing in another program"));
   ::close(fd);
   EXPECT_EQ(RecordingReader(path).frames(), 3);
 }
 
-TEST(Recording, IsWrittenAndReadOnAFileSystemWithoutLocks) {
+TEST(Recording, WorksOnAFileSystemWithoutLocks) {
   const test::TemporaryFolder folder;
   const std::vector<TargetFrame> frames = random_frames(3);
   for (const int error : {ENOLCK, ENOSYS, EOPNOTSUPP, EINVAL}) {
@@ -209,7 +209,7 @@ TEST(Recording, IsWrittenAndReadOnAFileSystemWithoutLocks) {
   }
 }
 
-TEST(Recording, HasWeightsOnlyWhereAPatchHasThem) {
+TEST(Recording, StoresWeightsOnlyForPatchesThatHaveThem) {
   const test::TemporaryFolder folder;
   const auto has_table = [](const std::string& path) {
     return read_file(path).find("weight") != std::string::npos;
@@ -220,7 +220,7 @@ TEST(Recording, HasWeightsOnlyWhereAPatchHasThem) {
   }
   EXPECT_FALSE(has_table(record(folder.file("none.h5"), frames)));
 
-  // weights that start at a patch in the middle
+  // weights from a patch in the middle on
   TargetFrame late = frames.back();
   late.patches.assign(1, frames[0].patches.empty() ? TargetField() : frames[0].patches[0]);
   late.patches[0].resize(2, 2);
@@ -235,7 +235,7 @@ TEST(Recording, HasWeightsOnlyWhereAPatchHasThem) {
     expect_same(reader.frame(i), frames[static_cast<std::size_t>(i)]);
   }
 
-  // wrong weights are refused in their own frame
+  // invalid weights are rejected only with their own frame
   frames[20].patches[0].weight = {0.0, -3.0, 0.0, 1.0};
   const RecordingReader negative(record(folder.file("negative.h5"), frames));
   EXPECT_NO_THROW(static_cast<void>(negative.frame(19)));
@@ -248,12 +248,12 @@ TEST(Recording, HasWeightsOnlyWhereAPatchHasThem) {
               HasSubstr("frame 20: weights that are 0 on all skin"));
 }
 
-TEST(Recording, HasPartsOfThePressureOnlyWhereAPatchHasThem) {
+TEST(Recording, StoresPartsOfThePressureOnlyForPatchesThatHaveThem) {
   const test::TemporaryFolder folder;
   std::vector<TargetFrame> frames = random_frames(30);
   EXPECT_EQ(read_file(record(folder.file("none.h5"), frames)).find("movement"), std::string::npos);
 
-  // parts that start at a patch in the middle
+  // parts from a patch in the middle on
   TargetFrame late = frames.back();
   late.patches.assign(1, TargetField());
   TargetField& patch = late.patches[0];
@@ -274,7 +274,7 @@ TEST(Recording, HasPartsOfThePressureOnlyWhereAPatchHasThem) {
     }
   }
 
-  // wrong parts are refused in their own frame
+  // invalid parts are rejected only with their own frame
   frames[20].patches[0].movement[3] = std::numeric_limits<double>::infinity();
   const RecordingReader endless(record(folder.file("endless.h5"), frames));
   EXPECT_NO_THROW(static_cast<void>(endless.frame(19)));
@@ -286,7 +286,7 @@ TEST(Recording, HasPartsOfThePressureOnlyWhereAPatchHasThem) {
               HasSubstr("must have as many values of each part of its pressure or none"));
 }
 
-TEST(Recording, HoldsAnEmptyOne) {
+TEST(Recording, MayBeEmpty) {
   const test::TemporaryFolder folder;
   const RecordingReader reader(record(folder.file("r.h5"), {}));
   EXPECT_EQ(reader.frames(), 0);
@@ -294,7 +294,7 @@ TEST(Recording, HoldsAnEmptyOne) {
               HasSubstr("no frame 0; it has 0 frames"));
 }
 
-TEST(Recording, GivesTheHeavierPatchAsAField) {
+TEST(Recording, ConvertsTheHeavierPatchToAField) {
   const test::TemporaryFolder folder;
   Random random(2);
   TargetFrame frame;
@@ -317,7 +317,7 @@ TEST(Recording, GivesTheHeavierPatchAsAField) {
   EXPECT_THAT(input_error([&] { read_field(path, options); }), HasSubstr("no frame -1"));
 }
 
-TEST(Recording, OpensAfterItsWriterDiedWithWhatWasFlushed) {
+TEST(Recording, KeepsFlushedFramesWhenItsWriterDies) {
   const test::TemporaryFolder folder;
   const std::vector<TargetFrame> frames = random_frames(160);  // 3.2 s
   const std::string path = folder.file("r.h5"), copy = folder.file("copy.h5");
@@ -330,7 +330,7 @@ TEST(Recording, OpensAfterItsWriterDiedWithWhatWasFlushed) {
   for (int i = 0; i < 150; ++i) expect_same(reader.frame(i), frames[static_cast<std::size_t>(i)]);
 }
 
-TEST(Recording, ReplacesAnOlderOneOnlyWhenItIsDone) {
+TEST(Recording, ReplacesAnOlderFileOnlyWhenComplete) {
   const test::TemporaryFolder folder;
   const std::string path = record(folder.file("r.h5"), random_frames(3));
   {
@@ -340,7 +340,7 @@ TEST(Recording, ReplacesAnOlderOneOnlyWhenItIsDone) {
   EXPECT_EQ(RecordingReader(path).frames(), 0);
 }
 
-TEST(Recording, SaysWhatIsNoRecording) {
+TEST(Recording, RejectsOtherFiles) {
   const test::TemporaryFolder folder;
   const auto sentence = [](const std::string& path) {
     return input_error([&] { const RecordingReader reader(path); });
@@ -352,7 +352,7 @@ TEST(Recording, SaysWhatIsNoRecording) {
   write_file(folder.file("picture.h5"), "\x89PNG\r\n\x1a\n");
   EXPECT_THAT(sentence(folder.file("picture.h5")), HasSubstr("is a PNG picture, not an HDF5 file"));
 
-  // cut off at many lengths
+  // truncated at many lengths
   const std::string bytes = read_file(record(folder.file("r.h5"), random_frames(20)));
   for (std::size_t size = 1; size < bytes.size(); size += bytes.size() / 50) {
     write_file(folder.file("cut.h5"), std::string_view(bytes).substr(0, size));
@@ -370,11 +370,11 @@ TEST(Recording, CannotBeWrittenWithoutAFolder) {
   EXPECT_THAT(input_error([&] { const Recorder recorder(folder.file(""), {}); }),
               HasSubstr("is a folder"));
   EXPECT_THAT(input_error([&] { const Recorder recorder(folder.file("r.txt"), {}); }),
-              HasSubstr("r.txt names no recording; it must end in .h5"));
+              HasSubstr("r.txt is not a name for a recording; it must end in .h5"));
   EXPECT_EQ(folder.entries(), 0u);
 }
 
-TEST(Recording, SaysThatTheDiskIsFullWheneverThatHappens) {
+TEST(Recording, ReportsAFullDiskAtAnyTime) {
   const std::vector<TargetFrame> frames = random_frames(300);
   const test::TemporaryFolder sizes;
   const auto whole = std::filesystem::file_size(record(sizes.file("r.h5"), frames));

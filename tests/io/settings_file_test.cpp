@@ -47,7 +47,7 @@ struct Kitchen {
   std::vector<SettingsGroup> groups() { return {group_of("stove", stove), group_of("oven", oven)}; }
 };
 
-TEST(Settings, SetWhatTheFileGivesAndLeaveTheRest) {
+TEST(Settings, SetTheGivenValuesAndKeepTheRest) {
   Kitchen kitchen;
   settings_from_toml(
       "[stove]\npower = 2\ngas = true\n[oven]\nmaker = \"them\"\nplates = -1\nheat = \"high\"\n",
@@ -74,7 +74,7 @@ TEST(Settings, RoundTripThroughJson) {
   EXPECT_EQ(json["oven"]["heat"], "low");
 }
 
-TEST(Settings, ReadAFile) {
+TEST(Settings, AreReadFromAFile) {
   const test::TemporaryFolder folder;
   Kitchen kitchen;
   write_file(folder.file("s.toml"), "stove.plates = 2\n");
@@ -99,7 +99,7 @@ struct Wrong {
   const char* sentence;
 };
 
-TEST(Settings, SayWhatIsWrongAndWhere) {
+TEST(Settings, ReportErrorsWithTheirPosition) {
   const Wrong wrongs[] = {
       {"[stove]\npowr = 1",
        "s.toml, line 2: stove has no setting \"powr\"; did you mean \"power\"?"},
@@ -109,7 +109,7 @@ TEST(Settings, SayWhatIsWrongAndWhere) {
       {"[bath]", "known are stove, oven"},
       {"stove = 1", "s.toml, line 1: stove must be a group of settings, written [stove]"},
       {"\npower = 1",
-       "s.toml, line 2: \"power\" stands outside a group of settings; did you mean [stove] power "
+       "s.toml, line 2: \"power\" is outside a group of settings; did you mean [stove] power "
        "or "
        "[oven] power?"},
       {"[power]", "there is no group of settings \"power\""},
@@ -119,7 +119,7 @@ TEST(Settings, SayWhatIsWrongAndWhere) {
       {"[stove]\npower = inf", "stove.power must be finite"},
       {"[stove]\npower = nan", "stove.power must be finite"},
       {"[stove]\nplates = 2.0", "stove.plates must be a whole number"},
-      {"[stove]\nplates = 3000000000", "stove.plates must lie within 32 bits"},
+      {"[stove]\nplates = 3000000000", "stove.plates must fit into 32 bits"},
       {"[stove]\ngas = 1", "stove.gas must be true or false"},
       {"[stove]\nmaker = 1", "stove.maker must be a string in quotes"},
       {"[stove]\nheat = 1", "stove.heat must be a string in quotes"},

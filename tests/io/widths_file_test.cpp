@@ -9,7 +9,7 @@
 namespace prostm {
 namespace {
 
-TEST(WidthsFile, IsInMillimetresWithTheDigitsOfTheirMetres) {
+TEST(WidthsFile, IsInMillimetresWithTheDigitsOfMetres) {
   const std::array entries{FocusWidthEntry{0.15, 0.03, kPi / 4.0, {0.0111, 0.00857, 1234.5}}};
   EXPECT_EQ(widths_to_json("usx", entries),
             R"({

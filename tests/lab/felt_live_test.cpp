@@ -1,4 +1,4 @@
-/// Live runs of the judge of what is felt.
+/// Evaluation of the felt field over live runs.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ TargetField target() {
   return fields::felt_field(fields::FeltKind::BlobPair, 1, fields::Outline::Palm);
 }
 
-/// A circle that goes round in 10 ms.
+/// A circle that takes 10 ms.
 Plan circle(const Vec2& middle) {
   constexpr int kPoints = 16;
   Plan plan;
@@ -30,14 +30,14 @@ Plan circle(const Vec2& middle) {
   return in_step(plan, target(), 0.010);
 }
 
-/// Plans one circle again and again.
+/// Plans the same circle every time.
 Way steady() {
   return {"steady", [](const TargetField&) -> Planning {
             return [](const TargetField&) { return circle(Vec2::Zero()); };
           }};
 }
 
-/// Plans the same at first, then circles to the left and right in turn.
+/// Plans the same circle first, then circles to the left and right in turn.
 Way wandering() {
   return {"wandering", [](const TargetField&) -> Planning {
             return [count = 0](const TargetField&) mutable {
@@ -47,7 +47,7 @@ Way wandering() {
           }};
 }
 
-TEST(FeltLab, ARunThatDoesNotChangeIsFeltAsItsLoop) {
+TEST(FeltLab, AConstantRunIsFeltLikeItsLoop) {
   const LiveSequence still{"still", std::vector<TargetField>(12, target())};
   const LiveSet set = score_live("test", usx_array(), {still}, {steady(), wandering()}, 2);
   const LiveScores own = set.scores[0][0], other = set.scores[1][0];
@@ -55,12 +55,12 @@ TEST(FeltLab, ARunThatDoesNotChangeIsFeltAsItsLoop) {
   EXPECT_NEAR(own.live, own.loop, 0.01);
   EXPECT_NEAR(own.window, own.live, 0.01);
   EXPECT_GT(own.intensity, 0.0);
-  EXPECT_EQ(other.alone, own.alone) << "planned with a planner of its own";
+  EXPECT_EQ(other.alone, own.alone) << "planned with a separate planner";
   EXPECT_NE(other.loop, own.loop);
   EXPECT_GT(other.faded, own.faded);
 }
 
-TEST(FeltLab, SequencesMoveUnlessTheyAreStill) {
+TEST(FeltLab, SequencesMoveUnlessTheyAreHeld) {
   const auto moving = live_sequences(false), still = live_sequences(true, 2);
   ASSERT_EQ(moving.size(), 5u);
   ASSERT_EQ(still.size(), 2u);
@@ -72,7 +72,7 @@ TEST(FeltLab, SequencesMoveUnlessTheyAreStill) {
     EXPECT_EQ(target.pressure, moving[1].targets[0].pressure);
 }
 
-TEST(FeltLab, APlannerGoesOnFromThePlanBefore) {
+TEST(FeltLab, APlannerContinuesFromThePreviousPlan) {
   const auto sequence = live_sequences(false, 1).front();
   for (const Way& way : ways(usx_array())) {
     if (way.name != "best") continue;

@@ -11,7 +11,7 @@ namespace prostm::bench {
 namespace {
 
 using planning::FeltTuning;
-/// The numbers of a tuning, which has nothing but floats and ints.
+/// The numbers of a tuning, which consists of floats and ints only.
 using Numbers = std::array<std::uint32_t, sizeof(FeltTuning) / sizeof(std::uint32_t)>;
 
 int differences(const FeltTuning& a, const FeltTuning& b) {
@@ -40,7 +40,7 @@ TEST(FeltTunings, AreComparedByTheLackOfTheirPlans) {
   EXPECT_EQ(rows.size(), 2 * tuning_variants(false).size());
   for (const Row& row : rows) {
     EXPECT_GT(row.ours.mean, 0.0) << row.name;
-    EXPECT_LT(row.ours.mean, 1.3) << row.name;  // of a flat percept
+    EXPECT_LT(row.ours.mean, 1.3) << row.name;  // relative to a flat percept
   }
 }
 

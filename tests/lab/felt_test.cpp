@@ -1,4 +1,4 @@
-/// The judge of what is felt of plans.
+/// Evaluation of the felt field of plans.
 
 #include "prostm/score/felt.hpp"
 
@@ -23,7 +23,7 @@ TargetField target() {
   return fields::felt_field(fields::FeltKind::BlobPair, 1, fields::Outline::Palm);
 }
 
-/// A short loop of two circles, in step.
+/// A short loop of two circles in step.
 Plan two_circles() {
   Plan plan;
   for (const double x : {-0.018, 0.018}) {
@@ -52,7 +52,7 @@ const Skin& nominal() {
   return all.front();
 }
 
-TEST(FeltJudge, ScoresAsTheProgramDoes) {
+TEST(FeltJudge, ScoresLikeTheProgram) {
   const TargetField field = target();
   TargetFrame frame;
   frame.patches.push_back(field);
@@ -82,7 +82,7 @@ TEST(FeltJudge, ScoresAsTheProgramDoes) {
   }
 }
 
-TEST(FeltJudge, DisturbancesWithoutSizeChangeNothing) {
+TEST(FeltJudge, DisturbancesOfSizeZeroChangeNothing) {
   const TargetField field = target();
   const auto still = felt_disturbances({.phase = 0.0, .shift = 0.0, .pressure = 0.0}),
              usual = felt_disturbances();
@@ -99,7 +99,7 @@ TEST(FeltJudge, DisturbancesWithoutSizeChangeNothing) {
   }
 }
 
-TEST(FeltJudge, OwnPeriodsTakeThePathsOutOfStep) {
+TEST(FeltJudge, SeparatePeriodsTakeThePathsOutOfStep) {
   const TargetField field = target();
   const std::vector<Disturbed> all = felt_disturbances();
   const std::vector<Play> plays = all.back().plays(two_circles(), field, 1);
@@ -138,14 +138,14 @@ TEST(FeltJudge, CountsCrossingsAndLongPaths) {
   const Judged good = judge.judge(plan, field, 1);
   EXPECT_EQ(good.crossings, 0);
   EXPECT_EQ(good.long_paths, 0);
-  // a tall loop over both edges of the other
+  // a tall loop across both edges of the other one
   for (Vec2& x : plan.paths[0].points) x = Vec2(0.5 * x.x() + 0.027, 4.0 * x.y());
   const Judged bad = judge.judge(plan, field, 1);
   EXPECT_EQ(bad.crossings, 4);
   EXPECT_EQ(bad.long_paths, 1);
 }
 
-TEST(FeltJudge, KeepsWhatItJudged) {
+TEST(FeltJudge, CachesItsResults) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("kept.json");
   const std::vector<NamedField> fields = {{"pair", target()}};
@@ -158,7 +158,7 @@ TEST(FeltJudge, KeepsWhatItJudged) {
   };
   const Judged first = judged(path), again = judged(path), fresh = judged("");
   EXPECT_FALSE(first.percept.empty());
-  EXPECT_TRUE(again.percept.empty()) << "judged again";
+  EXPECT_TRUE(again.percept.empty()) << "evaluated again";
   EXPECT_EQ(fresh.percept, first.percept);
   EXPECT_EQ(again.felt.skill_8, first.felt.skill_8);
   EXPECT_EQ(again.felt.overlap, first.felt.overlap);
@@ -171,7 +171,7 @@ TEST(FeltJudge, KeepsWhatItJudged) {
   EXPECT_THAT(test::input_error([&] { Kept wrong(path); }), testing::HasSubstr(path));
 }
 
-TEST(FeltJudge, KeysTellApartWhatIsJudged) {
+TEST(FeltJudge, KeysDistinguishInputs) {
   const TargetField field = target();
   const Plan plan = two_circles();
   const std::string key = key_of(plan, field, {"nominal"}, 1);

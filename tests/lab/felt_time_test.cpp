@@ -16,15 +16,15 @@
 namespace prostm::bench {
 namespace {
 
-const SkinPatch kPatch{32, 32, 5e-3};  // that of the generated fields
+const SkinPatch kPatch{32, 32, 5e-3};  // as the generated fields
 
-/// The nominal skin, stepped once for all tests.
+/// The nominal skin; its time steps are computed once for all tests.
 const TimeSkin& time_skin() {
   static const TimeSkin skin(SkinModel{SkinSettings{}}, kPatch);
   return skin;
 }
 
-/// Returns the percept that (S7) computes, and that of time steps after half a second.
+/// Returns the percept by (S7), and that of time steps after half a second.
 std::pair<std::vector<double>, std::vector<double>> percepts(const test::CirclingFocus& focus) {
   const int samples = static_cast<int>(std::round(focus.period / kFeltTick));
   const std::vector<double> loop = test::sampled(focus, kPatch, samples);
@@ -61,7 +61,7 @@ TEST(TimeSkin, ALoopSettlesToThePerceptOfItsHarmonics) {
   }
 }
 
-TEST(TimeSkin, APressureThatDoesNotChangeIsNotFelt) {
+TEST(TimeSkin, AConstantPressureIsNotFelt) {
   std::vector<float> pressure(kPatch.size() * 6000, 0.0F);
   for (std::size_t tick = 2000; tick < 6000; ++tick) pressure[tick * kPatch.size() + 528] = 100.0F;
   const std::vector<float> felt = time_skin().respond(pressure);
@@ -73,7 +73,7 @@ TEST(TimeSkin, APressureThatDoesNotChangeIsNotFelt) {
   EXPECT_THROW(time_skin().respond(std::vector<float>(7)), std::invalid_argument);
 }
 
-TEST(TimeSkin, BlocksJoinWithoutASeam) {
+TEST(TimeSkin, BlocksJoinSeamlessly) {
   test::CirclingFocus focus;
   focus.period = 20e-3;
   const std::vector<double> loop = test::sampled(focus, kPatch, 100);
@@ -136,7 +136,7 @@ LiveFelt felt(Method method, const std::vector<LivePlan>& plans) {
   return out;
 }
 
-/// Checks that a plan which is sent again and again is felt as its loop, within an error of S_8.5.
+/// Checks that a plan sent repeatedly is felt like its loop, within an error of S_8.5.
 void expect_as_its_loop(Method method, const std::vector<LivePlan>& plans, double error) {
   const LiveFelt live = felt(method, plans);
   TargetFrame frame;
@@ -147,29 +147,29 @@ void expect_as_its_loop(Method method, const std::vector<LivePlan>& plans, doubl
   for (std::size_t c = 0; c < live.mean_target.size(); ++c) {
     ASSERT_NEAR(live.mean_target[c], plans[0].target.pressure[c], 1e-12);
   }
-  EXPECT_EQ(live.window_skill_8.size(), 7u);  // of (480 − 200) ms
+  EXPECT_EQ(live.window_skill_8.size(), 7u);  // for (480 − 200) ms
   EXPECT_EQ(live.window_percept.size(), 7u * live.percept.size());
   EXPECT_GT(live.intensity, 0.0);
   EXPECT_EQ(live.emit.refused_plans, 0);
 }
 
-TEST(FeltLive, FociAreFeltAsTheirLoop) {
+TEST(FeltLive, FociAreFeltLikeTheirLoop) {
   expect_as_its_loop(Method::Am, plans_of(Method::Am, 12, fields::Pattern::FourPlumes), 0.002);
 }
 
-TEST(FeltLive, PathsInStepAreFeltAsTheirLoop) {
+TEST(FeltLive, PathsInStepAreFeltLikeTheirLoop) {
   std::vector<LivePlan> plans = plans_of(Method::ProStm, 12, fields::Pattern::FourPlumes);
   for (LivePlan& live : plans) put_in_step(live);
   expect_as_its_loop(Method::ProStm, plans, 0.015);
 }
 
-// Paths have their own periods, which a loop brings to one, and drift out of step.
-TEST(FeltLive, OtherPathsAreFeltNearlyAsTheirLoop) {
+// Paths have individual periods, which a loop makes equal, and drift out of step.
+TEST(FeltLive, OtherPathsAreFeltNearlyLikeTheirLoop) {
   expect_as_its_loop(Method::ProStm, plans_of(Method::ProStm, 12, fields::Pattern::FourPlumes),
                      0.06);
 }
 
-TEST(FeltLive, PlansThatWanderAreFeltLess) {
+TEST(FeltLive, WanderingPlansAreFeltLessWell) {
   std::vector<LivePlan> plans = plans_of(Method::ProStm, 10, fields::Pattern::Ring);
   const double steady = felt(Method::ProStm, plans).metrics.skill_8;
   for (std::size_t i = 0; i < plans.size(); ++i) {

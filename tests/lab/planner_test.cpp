@@ -1,4 +1,4 @@
-/// Counts and measurements of the planner's lab, on plans with known answers.
+/// Counts and measurements of the planner's lab, for plans with known answers.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kSigma = 8.6e-3, kMaxLength = 0.14;
 
-/// Returns a regular polygon, begun at corner `first`, in the other direction if `reversed`.
+/// Returns a regular polygon that starts at corner `first`, in the other direction if `reversed`.
 FocalPath polygon(const Vec2& centre, double length, int first = 0, bool reversed = false) {
   constexpr int kCorners = 20;
   const double radius = length / (2.0 * kCorners * std::sin(kPi / kCorners));
@@ -50,7 +50,7 @@ Violations violations_of(const Plan& plan) {
   return v;
 }
 
-TEST(Am, TheErrorFallsWithTheNumberOfFociAndForFewWithTheFallOff) {
+TEST(Am, TheErrorDecreasesWithTheNumberOfFociAndForFewWithSigma) {
   std::vector<Row> rows;
   const std::vector<Sequence> sequences = gallery();
   measure_am_table(sequences, 2, rows);
@@ -66,7 +66,7 @@ TEST(Am, TheErrorFallsWithTheNumberOfFociAndForFewWithTheFallOff) {
   EXPECT_EQ(rows[0].baseline_p50, 0.335);  // [B-1], no emitter
 }
 
-TEST(Am, IsTimedBesideThePapersRate) {
+TEST(Am, IsComparedWithThePapersTime) {
   std::vector<Row> rows;
   measure_am({gallery().front()}, 2, rows);
   ASSERT_EQ(rows.size(), 1u);
@@ -79,15 +79,15 @@ TEST(Am, IsTimedBesideThePapersRate) {
 TEST(Motion, ARigidlyMovedPlanMovesByItsDisplacement) {
   const Plan before = plan_of({polygon(Vec2(0.0, 0.0), 0.14), polygon(Vec2(0.06, 0.0), 0.10)});
   EXPECT_EQ(motion(before, before), 0.0);
-  // the paths in another order, begun elsewhere, one in the other direction
+  // the paths in another order, with other first points, one in the other direction
   const Vec2 d(1e-3, -2e-3);
   const Plan after = plan_of({polygon(Vec2(0.06, 0.0) + d, 0.10, 4, true), polygon(d, 0.14, 12)});
   EXPECT_NEAR(motion(before, after), d.norm(), 1e-9);
 }
 
-TEST(Motion, APathWithoutAPartnerHasMovedFromTheNearestOne) {
+TEST(Motion, AnUnmatchedPathCountsItsDistanceToTheNearestOne) {
   const FocalPath inner = polygon(Vec2::Zero(), 0.10), outer = polygon(Vec2::Zero(), 0.14);
-  // the circles' radii differ by 40 mm / 2π; the outer circle stays
+  // the circles' radii differ by 40 mm / 2π; the outer circle is unchanged
   const double gap = 0.04 / (2.0 * kPi);
   EXPECT_NEAR(motion(plan_of({outer}), plan_of({inner, outer})), 0.5 * gap, 0.02 * gap);
   EXPECT_NEAR(motion(plan_of({inner, outer}), plan_of({outer})), 0.5 * gap, 0.02 * gap);
@@ -123,7 +123,7 @@ TEST(Violations, EachKindIsCounted) {
   EXPECT_EQ(near.near_plans, 1);
   EXPECT_GE(near.near_pairs, 20);
 
-  // neighbours along a path may be near, opposite sides of a narrow loop may not
+  // neighbours along a path may be close, opposite sides of a narrow loop may not
   EXPECT_EQ(violations_of(plan_of({polygon(Vec2::Zero(), 0.05)})).near_pairs, 0);
   FocalPath narrow = polygon(Vec2::Zero(), 0.14);
   for (Vec2& x : narrow.points) x.y() *= 0.1;
@@ -135,7 +135,7 @@ TEST(Violations, EachKindIsCounted) {
   EXPECT_EQ(violations_of(plan_of({broken})).non_finite, 1);
 }
 
-TEST(LeastDistances, AreThoseOfTheNearestTwoThatSound) {
+TEST(LeastDistances, AreThoseOfTheClosestActivePair) {
   LeastDistances d;
   d.add(std::vector<Vec3>{Vec3::Zero()});
   EXPECT_EQ(d.instants(), 0u);
@@ -150,9 +150,9 @@ TEST(LeastDistances, AreThoseOfTheNearestTwoThatSound) {
   EXPECT_DOUBLE_EQ(d.share_below(5.5e-3), 0.25);
 }
 
-TEST(Simultaneous, FocalPointsAreFollowedInTheirOwnPeriods) {
-  // two circles of one length begun at the same angle keep the distance of their centres; in
-  // opposite directions the points meet where the circles are nearest
+TEST(Simultaneous, FocalPointsFollowTheirOwnPeriods) {
+  // two circles of equal length from the same angle keep the distance of their centres; in
+  // opposite directions the points meet where the circles are closest
   const auto follow_two = [](FocalPath a, FocalPath b, double b_period) {
     a.period = 0.02;
     b.period = b_period;
@@ -169,7 +169,7 @@ TEST(Simultaneous, FocalPointsAreFollowedInTheirOwnPeriods) {
   const LeastDistances opposite = follow_two(a, begun_at(b, 10, true), 0.02);
   EXPECT_NEAR(opposite.least(), 0.06 - 2.0 * radius, 1e-4);
   EXPECT_NEAR(follow_two(a, begun_at(b, 10, false), 0.02).least(), 0.06 - 2.0 * radius, 1e-4);
-  // in different periods the phases drift through all values
+  // with different periods the phases drift through all values
   EXPECT_NEAR(follow_two(a, b, 0.019).least(), 0.06 - 2.0 * radius, 2e-3);
 
   // silent focal points do not count
@@ -178,7 +178,7 @@ TEST(Simultaneous, FocalPointsAreFollowedInTheirOwnPeriods) {
   EXPECT_EQ(follow_two(a, silent, 0.02).instants(), 0u);
 }
 
-TEST(Simultaneous, RandomStartsAreTheSamePaths) {
+TEST(Simultaneous, RandomStartsKeepThePaths) {
   const FocalPath path = polygon(Vec2(0.01, 0.02), 0.12);
   const FocalPath back = begun_at(path, 7, true);
   EXPECT_EQ(back.points[0], path.points[7]);
@@ -190,7 +190,7 @@ TEST(Simultaneous, RandomStartsAreTheSamePaths) {
   }
 }
 
-TEST(Sequences, FramesAreSpreadEvenly) {
+TEST(Sequences, FramesAreEvenlySpaced) {
   EXPECT_EQ(spread(100, 4), (std::vector<int>{12, 37, 62, 87}));
   EXPECT_EQ(spread(3, 20), (std::vector<int>{0, 1, 2}));
   EXPECT_EQ(spread(100, 1), std::vector<int>{50});
@@ -245,13 +245,13 @@ FocalPath through(const std::vector<Vec2>& points) {
   return path;
 }
 
-TEST(Bending, IsThatOfShapesWhoseTurnsAreKnown) {
+TEST(Bending, MatchesShapesWithKnownTurns) {
   // convex: 2π in total, in equal parts
   const Bending round = bending(polygon(Vec2::Zero(), 0.14));
   EXPECT_NEAR(round.sharpest, 2.0 * kPi / 20, 1e-9);
   EXPECT_NEAR(round.rms, 2.0 * kPi / 20, 1e-9);
   EXPECT_NEAR(round.excess, 0.0, 1e-9);
-  // in both directions an L has five corners to one side and one to the other, of 90°
+  // in either direction an L has five corners to one side and one to the other, of 90°
   std::vector<Vec2> corners{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
   for (int way = 0; way < 2; ++way) {
     const Bending angular = bending(through(corners));
@@ -260,20 +260,20 @@ TEST(Bending, IsThatOfShapesWhoseTurnsAreKnown) {
     EXPECT_NEAR(angular.excess, kPi, 1e-9);
     std::reverse(corners.begin(), corners.end());
   }
-  // there and back, with a point in the middle without a turn
+  // out and back, with a straight point in the middle
   const Bending flat = bending(through({{0, 0}, {1, 0}, {2, 0}, {1, 1e-9}}));
   EXPECT_NEAR(flat.sharpest, kPi, 1e-6);
   EXPECT_NEAR(flat.rms, std::sqrt(0.5) * kPi, 1e-6);
 }
 
-TEST(Power, OneFocalPointGetsWhatItAsksFor) {
+TEST(Power, OneFocalPointGetsTheRequestedPressure) {
   const std::vector<FocusSample> one = {{Eigen::Vector3f(0.02F, -0.01F, 0.2F), 0.5F}};
   EXPECT_NEAR(reached(usx_array(), FocusMethod::Weighted, one)[0], 0.25, 1e-9);
   EXPECT_NEAR(reached(usx_array(), FocusMethod::Superposition, one)[0], 0.25, 1e-9);
 }
 
 TEST(Power, SeveralShareTheArray) {
-  // far from each other, where the drives for one focal point hardly sound at another
+  // far from each other, where the drives for one focal point hardly contribute at another
   for (int foci = 2; foci <= 8; ++foci) {
     std::vector<FocusSample> all;
     for (int f = 0; f < foci; ++f) {

@@ -1,4 +1,4 @@
-/// Held hands and what is measured on them.
+/// Held hands and the measurements on them.
 
 #include "plumes/plumes.hpp"
 
@@ -21,7 +21,7 @@ Hand in_device(HandSource& source, double time) {
   return frame.hands.at(0);
 }
 
-TEST(HeldHand, IsLevelAndWhereItIsPut) {
+TEST(HeldHand, IsLevelAndAtTheGivenPosition) {
   const auto study = make_study_hand({.size = 0.9});
   const auto held = make_still_hand(*study, {.x = 0.01, .y = -0.02, .height = 0.18});
   const Palm palm = palm_of(in_device(*held, 1.0));
@@ -32,7 +32,7 @@ TEST(HeldHand, IsLevelAndWhereItIsPut) {
   EXPECT_NEAR(palm_of(in_device(*tilted, 1.0)).tilt, 0.3, 1e-6);
 }
 
-TEST(HeldHand, OfARecordingTremblesAsItsPalmDid) {
+TEST(HeldHand, OfARecordingTremblesLikeItsPalm) {
   const std::string wave = test::source_file("data/wave.hands.jsonl");
   const auto fast = make_held_hand(wave, {.tremor_above = 8.0}),
              held = make_held_hand(wave, {.tremor_above = 4.0}), still = make_held_hand(wave, {});

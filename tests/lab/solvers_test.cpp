@@ -12,7 +12,7 @@
 namespace prostm {
 namespace {
 
-// The baseline must compute the same drives to be comparable.
+// The baseline is comparable only if it computes the same drives.
 TEST(TextbookGsPat, FindsTheDrivesOfTheReference) {
   Random random(1);
   for (const int foci : {1, 3, 8}) {

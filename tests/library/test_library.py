@@ -1,4 +1,4 @@
-"""The library as its users get it: installed into its own folder, with programs built against that alone."""
+"""The library as installed for its users: in its own folder, with programs built against that folder alone."""
 
 import os
 import re
@@ -19,7 +19,7 @@ QUICK = ["-std=c++20", "-O0", "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-
 
 
 def run(*command, status=0, **options):
-    """Runs a command that must end with `status`; returns its stdout, with stderr if it is to fail."""
+    """Runs a command that must end with `status`; returns its stdout, including stderr if it is to fail."""
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
     assert done.returncode == status, f"{command}\n{done.stdout}\n{done.stderr}"
     return done.stdout if status == 0 else done.stdout + done.stderr
@@ -27,7 +27,7 @@ def run(*command, status=0, **options):
 
 @pytest.fixture(scope="module")
 def prefix(tmp_path_factory):
-    """Returns the folder made by `cmake --install`, moved afterwards: nothing in it may know its first place."""
+    """Returns the folder made by `cmake --install`, moved afterwards: nothing in it may refer to its first location."""
     folder = tmp_path_factory.mktemp("installed")
     run(CMAKE, "--install", BUILD, "--prefix", folder / "first")
     (folder / "first").rename(folder / "moved")
@@ -36,7 +36,7 @@ def prefix(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def pkg_config(prefix):
-    """Returns a function that asks pkg-config about the installed library."""
+    """Returns a function that queries pkg-config about the installed library."""
     folder = next(prefix.rglob("prostm.pc")).parent
     return lambda *what: run("pkg-config", *what, "prostm", env={**os.environ, "PKG_CONFIG_PATH": str(folder)}).split()
 
@@ -56,7 +56,7 @@ def examples(prefix, tmp_path_factory):
 
 
 def project(folder, text):
-    """Makes a CMake project of one source."""
+    """Creates a CMake project with one source."""
     folder.mkdir()
     (folder / "CMakeLists.txt").write_text(f"cmake_minimum_required(VERSION 3.25)\nproject(own CXX)\n{text}\n")
     return folder
@@ -69,16 +69,16 @@ def numbers(pattern, text):
     return found
 
 
-def test_paths_go_round_a_ring(examples):
+def test_paths_follow_a_ring(examples):
     text = examples("01_plan")
-    paths = numbers(r"(\d+) points, (\d+) mm round, a lap takes ([\d.]+) ms", text)
+    paths = numbers(r"(\d+) points, (\d+) mm long, ([\d.]+) ms per lap", text)
     assert text.startswith(f"{len(paths)} paths\n") and 1 <= len(paths) <= 4
     for points, length, lap in paths:
         assert 8 <= points <= 64 and 35 <= length <= 140
         assert lap == pytest.approx(length / 7.0, abs=0.15)  # at 7 m/s
 
 
-def test_a_plan_beats_what_must_lose(examples):
+def test_a_plan_beats_its_controls(examples):
     text = examples("02_quality")
     rows = {line[:36].strip(): numbers(r"correlation (-?[\d.]+)  rmse ([\d.]+)  skill (-?[\d.]+)", line)[0]
             for line in text.splitlines() if "correlation" in line}
@@ -87,11 +87,11 @@ def test_a_plan_beats_what_must_lose(examples):
     assert len(rows) == 3
     for correlation, _, skill in rows.values():
         assert correlation < plan[0] and skill < plan[2]
-    [(plain, weighted)] = numbers(r"weighted rmse ([\d.]+), of a plan that knows the weights ([\d.]+)", text)
+    [(plain, weighted)] = numbers(r"weighted rmse ([\d.]+), ([\d.]+) when planned with the weights", text)
     assert 0 < weighted < plain
 
 
-def test_moving_points_draw_it_better_than_still_ones(examples):
+def test_moving_points_render_better_than_points_at_rest(examples):
     text = examples("03_am")
     [(paths, moving, foci, still)] = numbers(r"correlation: (\d+) paths ([\d.]+), (\d+) foci ([\d.]+)", text)
     assert paths >= 1 and foci == 4 == len(numbers(r"focus at \((-?\d+), (-?\d+)\) mm", text))
@@ -109,23 +109,23 @@ def test_a_loop_is_sampled_at_40_kHz(examples):
         assert 0.2 < intensity <= 1.0
 
 
-def test_a_device_of_ones_own_is_given_segments(examples):
+def test_a_custom_device_receives_segments(examples):
     text = examples("05_device")
     segments = numbers(r"320 values for (\d) focal points, the last \((-?\d+), (-?\d+), (\d+)\) mm at ([\d.]+)", text)
     assert len(segments) == 6
     assert all(foci == 4 and abs(x) <= 60 and abs(y) <= 60 and z == 200 for foci, x, y, z, _ in segments)
-    assert all(segment[4] > 0.3 for segment in segments[:5]) and segments[5][4] == 0  # it stalls, and fades
+    assert all(segment[4] > 0.3 for segment in segments[:5]) and segments[5][4] == 0  # it stalls, then fades
     assert len({segment[1:3] for segment in segments}) > 1
 
 
-def test_pkg_config_is_enough_for_the_compiler(pkg_config, tmp_path):
+def test_pkg_config_is_sufficient_for_the_compiler(pkg_config, tmp_path):
     flags = pkg_config("--cflags", "--libs")
     run(COMPILER, *QUICK, EXAMPLES / "02_quality.cpp", "-o", tmp_path / "quality", *flags)
     assert run(tmp_path / "quality").startswith("plan ")
 
 
-def test_every_library_of_pkg_config_follows_those_that_need_it(pkg_config, tmp_path):
-    """A linker that reads each library once resolves everything: this program needs all libraries."""
+def test_libraries_in_pkg_config_follow_those_that_need_them(pkg_config, tmp_path):
+    """Even a linker that reads each library once resolves everything: this program needs all libraries."""
     (tmp_path / "all.cpp").write_text("""#include <prostm/am/am_planner.hpp>
 #include <prostm/prostm.hpp>
 #include <prostm/score/felt.hpp>
@@ -139,7 +139,7 @@ int main() {
     run(COMPILER, *QUICK, tmp_path / "all.cpp", "-o", tmp_path / "all", *pkg_config("--cflags", "--libs"))
 
 
-def test_the_project_of_five_lines_that_the_documents_show(prefix, tmp_path):
+def test_the_five_line_project_in_the_documents_builds(prefix, tmp_path):
     [text] = re.findall(r"```cmake\n(.*?)```", (ROOT / "docs" / "guides" / "cpp.md").read_text(), re.S)
     assert text.count("\n") == 5
     (tmp_path / "CMakeLists.txt").write_text(text)
@@ -177,7 +177,7 @@ int main() {
     ("find_package(prostm 0.2 REQUIRED)", ["0.2", "version: 0.1"]),
     ("find_package(prostm 0.0 REQUIRED)", ["0.0", "version: 0.1"]),
 ])
-def test_what_is_not_there_is_said(prefix, tmp_path, text, words):
+def test_missing_components_are_reported(prefix, tmp_path, text, words):
     answer = configure(prefix, project(tmp_path / "own", text), tmp_path / "build", status=1)
     for word in words:
         assert word in re.sub(r"\s+", " ", answer)
@@ -188,7 +188,7 @@ def public_headers(prefix):
     return [header.relative_to(prefix / "include") for header in headers if "detail" not in header.parts]
 
 
-def test_every_public_header_finds_what_it_includes_in_what_is_installed(prefix, pkg_config, tmp_path):
+def test_every_public_header_compiles_against_the_installed_files(prefix, pkg_config, tmp_path):
     headers = public_headers(prefix)
     stages = {header.parts[1] for header in headers if len(header.parts) > 2}
     assert stages == {"core", "target", "acoustics", "felt", "plan", "am", "emit", "device", "score",
@@ -215,13 +215,13 @@ def test_the_version_is_the_same_everywhere(prefix, pkg_config):
     assert f"version: {released[1]}\ndate-released: {released[2]}\n" in cited
 
 
-def test_what_is_installed_knows_no_folder_of_the_checkout(prefix):
+def test_installed_files_refer_to_no_folder_of_the_checkout(prefix):
     for file in [*prefix.rglob("*.cmake"), *prefix.rglob("*.pc"), *prefix.rglob("*.hpp")]:
         assert str(ROOT) not in file.read_text(), file
     assert not list(prefix.rglob("*.so")) and not list(prefix.rglob("*.py")), "the Python module has its own install"
 
 
-def test_a_project_that_holds_this_one_needs_only_the_planners_part(tmp_path):
+def test_a_project_that_includes_this_one_needs_only_the_planner(tmp_path):
     source = project(tmp_path / "own", f"add_subdirectory({ROOT} prostm)\n"
                      f"add_executable(own {EXAMPLES / '01_plan.cpp'})\ntarget_link_libraries(own prostm::plan)")
     answer = configure(tmp_path, source, tmp_path / "build", f"--graphviz={tmp_path / 'graph'}")

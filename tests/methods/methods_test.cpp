@@ -15,7 +15,7 @@ TargetField target() {
   return fields::make(fields::Pattern::OnePlume, 50, kCells);
 }
 
-TEST(Rendering, ControlsMakeEqualWhatTheySay) {
+TEST(Rendering, ControlsEqualiseTheStatedQuantity) {
   const TargetField field = target();
   Renderer renderer(usx_array(), field);
   const Rendering best = renderer.render(Way::Best, field), am = renderer.render(Way::Am, field),
@@ -36,7 +36,7 @@ TEST(Rendering, ControlsMakeEqualWhatTheySay) {
   }
 }
 
-TEST(Rendering, FlatHasNoSkillAndBestHas) {
+TEST(Rendering, FlatHasNoSkillButBestHas) {
   const TargetField field = target();
   Renderer renderer(usx_array(), field);
   const Rendering flat = renderer.render(Way::Flat, field);

@@ -1,4 +1,4 @@
-/// Advice where rates are missed.
+/// Advice when rates are missed.
 
 #include "prostm/pipeline/realtime/advice.hpp"
 
@@ -25,8 +25,8 @@ std::string said(const WorkTime& work, const PipelineSettings& settings) {
   return sentence(advise(work, settings), settings);
 }
 
-// however slow the machine is
-TEST(Advice, NamesOnlyGridsThatKeepTheStimulus) {
+// at any speed of the machine
+TEST(Advice, SuggestsOnlyGridsThatKeepTheStimulus) {
   for (const Scene& scene : scenes()) {
     PipelineSettings settings = in(std::string(scene.name));
     for (const int cells : {32, 40, 48, 56, 64, 96, 160}) {
@@ -44,7 +44,7 @@ TEST(Advice, NamesOnlyGridsThatKeepTheStimulus) {
   }
 }
 
-TEST(Advice, NamesTheFinestGridThatFits) {
+TEST(Advice, SuggestsTheFinestGridThatFits) {
   EXPECT_EQ(said({24e-3, 2e-3}, in("one-plume")),
             "Use --grid 48, which keeps the stimulus of one-plume, or close other programs.");
   EXPECT_EQ(said({80e-3, 2e-3}, in("one-plume")),
@@ -54,14 +54,14 @@ TEST(Advice, NamesTheFinestGridThatFits) {
   EXPECT_EQ(said({24e-3, 2e-3}, in("ring")), "Use --grid 48, or close other programs.");
 }
 
-TEST(Advice, SaysThatNoOptionHelps) {
+TEST(Advice, ReportsThatNoOptionHelps) {
   EXPECT_EQ(said({24e-3, 2e-3}, in("four-plumes")),
             "No option is fast enough and keeps the stimulus of four-plumes: close other programs, "
             "or use a faster machine.");
   EXPECT_THAT(said({1.0, 2e-3}, in("ring")), HasSubstr("No option is fast enough: close"));
 }
 
-TEST(Advice, SaysWhatIsNotKnown) {
+TEST(Advice, ReportsWhatIsUnknown) {
   PipelineSettings settings = in("four-plumes");
   settings.study_hand.height = 0.18;
   EXPECT_THAT(
@@ -70,7 +70,7 @@ TEST(Advice, SaysWhatIsNotKnown) {
             HasSubstr("--grid 56"), Not(HasSubstr("Use --grid"))));
 }
 
-TEST(Advice, OtherProgramsAreTheFirstRemedyWhereTheWorkFits) {
+TEST(Advice, OtherProgramsAreTheFirstRemedyIfTheWorkFits) {
   EXPECT_EQ(said({8e-3, 2e-3}, in("four-plumes")),
             "Close other programs, or use --grid 56, which keeps the stimulus of four-plumes.");
   PipelineSettings coarse = in("four-plumes");
@@ -78,7 +78,7 @@ TEST(Advice, OtherProgramsAreTheFirstRemedyWhereTheWorkFits) {
   EXPECT_EQ(said({8e-3, 2e-3}, coarse), "Close other programs.");
 }
 
-TEST(Advice, PlansAreTurnedDownByThemselves) {
+TEST(Advice, SlowPlansHaveTheirOwnAdvice) {
   PipelineSettings settings = in("four-plumes");
   EXPECT_EQ(said({8e-3, 39e-3}, settings), "Use --preset fast.");
   settings.plan.preset = Preset::Fast;
@@ -87,14 +87,14 @@ TEST(Advice, PlansAreTurnedDownByThemselves) {
   EXPECT_THAT(said({8e-3, 39e-3}, settings), HasSubstr("No option is fast enough"));
 }
 
-TEST(Advice, PartsThatAreOnlyRecordedAreLeftOutFirst) {
+TEST(Advice, RecordedPartsAreDroppedFirst) {
   PipelineSettings settings = in("four-plumes");
   settings.fluid_pressure.parts = true;
   EXPECT_THAT(said({24e-3, 2e-3}, settings), HasSubstr("parts = false"));
 }
 
-// a run that is judged now and then by other times
-TEST(Adviser, KeepsToItsOptionWhileTheSettingsStay) {
+// a run that is evaluated repeatedly, with varying times
+TEST(Adviser, KeepsItsSuggestionWhileTheSettingsStay) {
   Adviser adviser;
   PipelineSettings settings = in("one-plume");
   EXPECT_EQ(adviser.advise({24e-3, 2e-3}, settings).cells, 48);

@@ -1,4 +1,4 @@
-/// The box that goes with the hand.
+/// The box that follows the hand.
 
 #include "prostm/pipeline/smoke/box_follow.hpp"
 
@@ -46,13 +46,13 @@ TEST(BoxFollower, KeepsThePointInTheMiddle) {
     const double floor = std::clamp(p.z() - edge * 2.0 / 3.0, 0.0, BoxFollower::kHighestFloor);
     ASSERT_NEAR(now.p_DF.z(), floor, slack + home.cell);
     ASSERT_GE(now.p_DF.z(), -1e-12);
-    // it stays there, also while the hand trembles
+    // the box stays there, even while the hand trembles
     ASSERT_EQ(follower.shift(hand_at(p), now), CellShift{});
   }
 }
 
-// trackers may list two hands in any order
-TEST(BoxFollower, StaysWithTheNearestOfTwoHands) {
+// trackers may list two hands in either order
+TEST(BoxFollower, FollowsTheNearestOfTwoHands) {
   const GridShape home = box(0.2);
   const BoxFollower follower({BoxFollows::Palm}, home);
   const HandFrame left = hand_at(Vec3(-0.15, 0.0, 0.2)), right = hand_at(Vec3(0.05, 0.0, 0.2));
@@ -63,7 +63,7 @@ TEST(BoxFollower, StaysWithTheNearestOfTwoHands) {
   EXPECT_EQ(follower.shift(swapped, home), follower.shift(right, home));
 }
 
-TEST(BoxFollower, MovesNothingWithoutAPlace) {
+TEST(BoxFollower, StaysWithoutATarget) {
   const GridShape home = box(0.2);
   const BoxFollower follower({BoxFollows::Index}, home);
   EXPECT_EQ(follower.shift({}, home), CellShift{});
@@ -71,13 +71,13 @@ TEST(BoxFollower, MovesNothingWithoutAPlace) {
             CellShift{});
   const CellShift far = follower.shift(hand_at(Vec3(1e300, 0.0, 0.1)), home);
   EXPECT_LE(far[0] * home.cell, 10.0);
-  // a box that follows nothing goes home
+  // a box that follows nothing returns to its home position
   const BoxFollower nobody({}, home);
   EXPECT_EQ(nobody.shift(hand_at(Vec3(0.2, 0, 0.3)), home), CellShift{});
   EXPECT_EQ(nobody.shift({}, moved(home, {3, -2, 1})), (CellShift{-3, 2, -1}));
 }
 
-/// A flat hand that swings to and fro, faster than a person's in a study.
+/// A flat hand that swings back and forth, faster than a person's in a study.
 class Swinging final : public HandSource {
  public:
   void sample(double time, HandFrame& out) override {
@@ -93,7 +93,7 @@ class Swinging final : public HandSource {
   std::unique_ptr<HandSource> study_ = make_study_hand({});
 };
 
-TEST(BoxFollower, TakesTheWholeLineAlong) {
+TEST(BoxFollower, MovesTheWholePipeline) {
   PipelineSettings settings;
   settings.scene = "four-plumes";
   settings.fluid.cells = 32;
@@ -123,7 +123,7 @@ TEST(BoxFollower, TakesTheWholeLineAlong) {
     EXPECT_FALSE(stage.world_stats().reset);
   }
   EXPECT_GT((highest - lowest).x(), 0.15);
-  EXPECT_EQ(outside, 0) << "of " << targets << " targets' joints";
+  EXPECT_EQ(outside, 0) << "of the joints of " << targets << " targets";
   EXPECT_GT(most, 0.02);
 }
 

@@ -34,7 +34,7 @@ Pipeline pipeline_of(const LiveSettings& s) {
   return Pipeline(s.pipeline, make_scripted_hand(s.pipeline.scripted_hand, s.pipeline.track));
 }
 
-TEST(Controls, HaveIdsOfTheirOwnAndSayWhatTheyDo) {
+TEST(Controls, HaveDistinctIdsAndHelpTexts) {
   std::set<std::string_view> ids;
   for (const RunControl& c : run_controls()) {
     SCOPED_TRACE(c.id);
@@ -48,8 +48,8 @@ TEST(Controls, HaveIdsOfTheirOwnAndSayWhatTheyDo) {
   EXPECT_EQ(control_index("no such"), -1);
 }
 
-// a set value can be read back, and the defaults lie within the bounds
-TEST(Controls, GetWhatWasSet) {
+// a value can be read back, and the defaults lie within the bounds
+TEST(Controls, ReturnTheValueSet) {
   for (const RunControl& c : run_controls()) {
     SCOPED_TRACE(c.id);
     LiveSettings s = small_settings();
@@ -64,7 +64,7 @@ TEST(Controls, GetWhatWasSet) {
   }
 }
 
-TEST(Controls, TakeTheRightKindOfValueWithinBounds) {
+TEST(Controls, AcceptTheRightKindOfValueWithinBounds) {
   const LiveSettings s = small_settings();
   const auto number_of = [&](const char* id, const ControlValue& value) {
     return control_number(run_controls()[static_cast<std::size_t>(control_index(id))], value, s);
@@ -83,7 +83,7 @@ TEST(Controls, TakeTheRightKindOfValueWithinBounds) {
   EXPECT_THROW(number_of("source", std::string("leap")), InputError) << "there is no tracker";
 }
 
-// sets every control to both its bounds in a running pipeline
+// sets every control to both of its bounds in a running pipeline
 TEST(Controls, APipelineTakesEveryOneBetweenSteps) {
   LiveSettings s = small_settings();
   Pipeline pipeline = pipeline_of(s);
@@ -101,14 +101,14 @@ TEST(Controls, APipelineTakesEveryOneBetweenSteps) {
   EXPECT_EQ(pipeline.contact().step, 5);
 }
 
-/// Results of 0.1 s of a run: the played samples, and the last plan.
+/// Results of 0.1 s of a run: the samples played, and the last plan.
 struct Outcome {
   std::vector<FocusSample> played;
   Plan plan;
 };
 
-/// Returns the outcome until the clock shows 1.5 s, of a run that takes `wanted` at 1.3 s. Its
-/// device starts anew there in any case, so that samples are comparable.
+/// Returns the outcome until 1.5 s of a run that gets the settings `wanted` at 1.3 s. Its device
+/// restarts there in any case, so that samples are comparable.
 Outcome outcome_of(const LiveSettings& from, LiveSettings wanted) {
   Pipeline pipeline = pipeline_of(from);
   for (int i = 0; i < 65; ++i) pipeline.step(0.02);
@@ -124,7 +124,7 @@ double mean_pressure(const FocalPath& path) {
          static_cast<double>(path.pressure.size());
 }
 
-/// Returns the largest difference of two runs, in the samples' intensities and places, and in the
+/// Returns the largest differences of two runs, in the samples' intensities and positions, and in
 /// paths' pressures [1, m, Pa].
 double difference(const Outcome& one, const Outcome& other) {
   const std::vector<FocusSample>&a = one.played, &b = other.played;
@@ -141,9 +141,9 @@ double difference(const Outcome& one, const Outcome& other) {
   return most;
 }
 
-// every control changes the plan or its emission, except the source of hands and their prediction,
-// which the source decides, and what is computed beside the plan
-TEST(Controls, EachChangesThePlanOrWhatIsPlayed) {
+// every control changes the plan or its emission, except the source of hands, their prediction,
+// which the source handles, and quantities computed in addition to the plan
+TEST(Controls, EachChangesThePlanOrTheOutput) {
   for (const Method method : {Method::ProStm, Method::Am}) {
     LiveSettings s = small_settings();
     s.pipeline.method = method;
@@ -164,8 +164,8 @@ const RunControl& control_of(const char* id) {
   return run_controls()[static_cast<std::size_t>(control_index(id))];
 }
 
-// moved points take longer than a run in real time has
-TEST(Controls, PointsThatMoveAreRefusedWhereTimeIsShort) {
+// moving the points takes longer than a real-time run allows
+TEST(Controls, MovingPointsIsRejectedWithinAShortBudget) {
   LiveSettings s = small_settings();
   control_of("felt_weight").set(s, 0.9);
   s.pipeline.plan.felt_points = true;
@@ -176,8 +176,8 @@ TEST(Controls, PointsThatMoveAreRefusedWhereTimeIsShort) {
   EXPECT_NO_THROW(validate(s.pipeline.plan));
 }
 
-// what a page would otherwise be refused
-TEST(Controls, ThePapersPresetsTurnWhatIsFeltOff) {
+// otherwise a page's change would be rejected
+TEST(Controls, ThePapersPresetsTurnOffTheFeltWeight) {
   for (const Preset preset : {Preset::Paper, Preset::PaperValid, Preset::Fast}) {
     LiveSettings s = small_settings();
     Pipeline pipeline = pipeline_of(s);
@@ -192,8 +192,8 @@ TEST(Controls, ThePapersPresetsTurnWhatIsFeltOff) {
   }
 }
 
-// a new plan is in step from the next update on, and on its own again once the weight is 0
-TEST(Controls, WhatIsFeltComesAndGoesInARun) {
+// a new plan is in step from the next update on, and no longer once the weight is 0
+TEST(Controls, TheFeltWeightCanBeChangedInARun) {
   LiveSettings s = small_settings();
   Pipeline pipeline = pipeline_of(s);
   for (int i = 0; i < 65; ++i) pipeline.step(0.02);
@@ -218,7 +218,7 @@ TEST(Controls, WhatIsFeltComesAndGoesInARun) {
   EXPECT_TRUE(late());
 }
 
-TEST(Controls, BothPartsOfThePressureComeAndGo) {
+TEST(Controls, BothPartsOfThePressureCanBeTurnedOnAndOff) {
   LiveSettings s = small_settings();
   Pipeline pipeline = pipeline_of(s);
   const RunControl& parts = control_of("parts");
@@ -262,7 +262,7 @@ TEST(Reconfigure, ChangesThePlanAndKeepsTheSmoke) {
   }
   EXPECT_EQ(pipeline.plan().id, updates + 1);
   EXPECT_LE(pipeline.plan().plan.paths.size(), 2U);
-  EXPECT_GE(pipeline.device_stats().blocks, blocks) << "counters go on";
+  EXPECT_GE(pipeline.device_stats().blocks, blocks) << "counters continue";
 
   s.pipeline.method = Method::Am;
   pipeline.reconfigure(s.pipeline);
@@ -270,20 +270,20 @@ TEST(Reconfigure, ChangesThePlanAndKeepsTheSmoke) {
   EXPECT_FALSE(pipeline.plan().plan.foci.empty());
 }
 
-TEST(Reconfigure, AnyDifferenceCountsAndNoneDoesNot) {
+TEST(Reconfigure, RebuildsOnAnyDifferenceAndNotWithoutOne) {
   const LiveSettings s = small_settings();
   Pipeline pipeline = pipeline_of(s);
   for (int i = 0; i < 20; ++i) pipeline.step(0.02);
   const std::int64_t played = pipeline.device().samples();
   pipeline.reconfigure(s.pipeline);
-  EXPECT_EQ(pipeline.device().samples(), played) << "nothing is made anew";
+  EXPECT_EQ(pipeline.device().samples(), played) << "nothing is rebuilt";
   PipelineSettings other = s.pipeline;
   other.plan.gain *= 1.0 + 1e-9;
   pipeline.reconfigure(other);
   EXPECT_EQ(pipeline.device().samples(), 0) << "another planner and emitter";
 }
 
-TEST(Reconfigure, WhatIsRefusedLeavesEverythingAsItWas) {
+TEST(Reconfigure, ARejectedChangeLeavesEverythingUnchanged) {
   const LiveSettings s = small_settings();
   Pipeline pipeline = pipeline_of(s);
   for (int i = 0; i < 40; ++i) pipeline.step(0.02);
@@ -305,7 +305,7 @@ TEST(Reconfigure, WhatIsRefusedLeavesEverythingAsItWas) {
   EXPECT_EQ(pipeline.device().status(), DeviceStatus::Running);
 }
 
-TEST(VolumeView, IsTheMeanOfBlocks) {
+TEST(VolumeView, AveragesBlocks) {
   for (const int cells : {32, 33, 48, 64, 80, 96, 100, 131}) {
     SCOPED_TRACE(cells);
     WorkerPool pool(1);

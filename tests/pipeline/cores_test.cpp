@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file system of its own, as far as control groups are concerned.
+/// A file system that has only the files of control groups.
 class ControlGroups : public ::testing::Test {
  protected:
   ControlGroups() {
@@ -32,7 +32,7 @@ class ControlGroups : public ::testing::Test {
       (std::string("groups-") + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
-TEST_F(ControlGroups, WithoutALimitThereIsNone) {
+TEST_F(ControlGroups, MissingLimitsAreInfinite) {
   EXPECT_TRUE(std::isinf(cgroup_cores(root_)));
   EXPECT_TRUE(std::isinf(cgroup_cores(root_ / "nowhere")));
   write("proc/self/cgroup", "0::/a\n");
@@ -40,21 +40,21 @@ TEST_F(ControlGroups, WithoutALimitThereIsNone) {
   EXPECT_TRUE(std::isinf(cgroup_cores(root_)));
 }
 
-TEST_F(ControlGroups, TheLeastQuotaOfV2Counts) {
+TEST_F(ControlGroups, TheSmallestQuotaOfV2Applies) {
   write("proc/self/cgroup", "0::/a/b\n");
   write("sys/fs/cgroup/a/cpu.max", "150000 100000\n");
   write("sys/fs/cgroup/a/b/cpu.max", "400000 100000\n");
   EXPECT_DOUBLE_EQ(cgroup_cores(root_), 1.5);
 }
 
-// a container sees its own group as the root
-TEST_F(ControlGroups, TheRootCountsWhereThePathIsTheHosts) {
+// a container has its own group as the root
+TEST_F(ControlGroups, TheRootAppliesIfThePathIsTheHosts) {
   write("proc/self/cgroup", "0::/kubepods/pod1\n");
   write("sys/fs/cgroup/cpu.max", "50000 100000\n");
   EXPECT_DOUBLE_EQ(cgroup_cores(root_), 0.5);
 }
 
-TEST_F(ControlGroups, QuotasOfV1Count) {
+TEST_F(ControlGroups, QuotasOfV1Apply) {
   write("proc/self/cgroup", "5:devices:/x\n4:cpu,cpuacct:/a\n0::/\n");
   write("sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "-1\n");
   write("sys/fs/cgroup/cpu,cpuacct/cpu.cfs_period_us", "100000\n");
@@ -63,7 +63,7 @@ TEST_F(ControlGroups, QuotasOfV1Count) {
   EXPECT_DOUBLE_EQ(cgroup_cores(root_), 2.0);
 }
 
-TEST(Cores, AreThoseOfTheAffinity) {
+TEST(Cores, FollowTheAffinity) {
   EXPECT_GE(usable_cores(), 1);
   std::jthread([] {
     cpu_set_t all, one;

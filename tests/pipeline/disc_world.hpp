@@ -1,5 +1,5 @@
 #pragma once
-/// A world that no build of prostm has: a disc that presses evenly on the skin above the array.
+/// A world that prostm does not have: a disc that presses evenly on the skin above the array.
 
 #include <algorithm>
 #include <array>
@@ -48,10 +48,10 @@ class DiscWorld final : public World, public PressureSource {
   inline static const Vec3 kCentre{0.0, 0.02, 0.23};
   GridShape grid_{64, 64, 64, 0.36 / 64, Vec3(-0.18, -0.18, 0.0)};
   double radius_, pressure_;
-  double area_ = 0.0;  // of the last target [cm²]
+  double area_ = 0.0;  // for the last target [cm²]
 };
 
-/// Its row in a table of worlds.
+/// Its row for a table of worlds.
 inline constexpr WorldKind kDisc = {
     "disc", "a disc that presses evenly",
     []() -> std::span<const WorldScene> { return kDiscScenes; },

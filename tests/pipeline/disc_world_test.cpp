@@ -1,4 +1,4 @@
-// A world of a program's own, chosen by name from the program's own table.
+// A world of another program, chosen by name from that program's table.
 #include "pipeline/disc_world.hpp"
 
 #include <gmock/gmock.h>
@@ -59,7 +59,7 @@ TEST(DiscWorld, IsChosenByNameAndPlanned) {
   EXPECT_EQ(s.full_scale_pressure, settings_of("disc").plan.gain * 0.5);
 }
 
-TEST(DiscWorld, SummaryHasItsOwnQuantityAlone) {
+TEST(DiscWorld, SummaryHasOnlyItsOwnQuantity) {
   Onlooker onlooker;
   const RunSummary disc = stepped("disc", onlooker);
   ASSERT_EQ(disc.world_quantities.size(), 1U);
@@ -109,7 +109,7 @@ TEST(DiscWorld, ReconfigureChangesSceneAndWorld) {
   EXPECT_EQ(pipeline.settings().world, "smoke");
 }
 
-TEST(WorldKinds, StudiesListAnotherWorldThanTheDefaultAlone) {
+TEST(WorldKinds, StudiesListOnlyOtherWorldsThanTheDefault) {
   PipelineSettings settings;
   const auto first_of = [](const std::vector<SettingsGroup>& groups) {
     return std::string(setting_rows(groups.front().read).front().setting.name);

@@ -38,8 +38,8 @@ TEST(JetTrim, FollowsItsEquation) {
   EXPECT_NEAR(trim.gains()[1], scale * down, 1e-12);
 }
 
-// pressure goes with the square of a jet's speed; here one jet loses a third of its pressure
-TEST(JetTrim, MakesJetsPressAlike) {
+// pressure is proportional to the square of a jet's speed; here one jet loses a third of it
+TEST(JetTrim, EqualisesTheJetsPressures) {
   JetTrim trim({.trim_rate = 0.3}, 2);
   double left = 0.0, right = 0.0;
   for (int step = 0; step < 2000; ++step) {
@@ -66,7 +66,7 @@ TEST(JetTrim, HoldsItsGainsUnlessEveryJetPressesOnSkin) {
   EXPECT_FALSE(never.update(pressed(0.05, 0.1), kJets, 0.02));
 }
 
-TEST(ScenePlace, MovesTurnsAndSizesTheJets) {
+TEST(ScenePlace, MovesRotatesAndScalesTheJets) {
   const ScenePlace place{Vec2(0.05, -0.01), 0.5 * kPi, 1.2};
   SmokeInflow inflow;
   inflow.jets = {{Vec2(0.0, 0.02), 0.03, 0.7}};
@@ -79,7 +79,7 @@ TEST(ScenePlace, MovesTurnsAndSizesTheJets) {
   EXPECT_EQ(moved.jets[0].speed, 0.7);
 }
 
-/// A study hand held beside the array's middle.
+/// A study hand held off the middle of the array.
 class Aside final : public HandSource {
  public:
   explicit Aside(double x) : x_(x), hand_(make_study_hand({})) {}
@@ -93,7 +93,7 @@ class Aside final : public HandSource {
   std::unique_ptr<HandSource> hand_;
 };
 
-/// Where the pressure on a hand has its middle, by x in D, after 2 s [m].
+/// x of the centre of pressure on a hand, in D, after 2 s [m].
 double middle_of_pressure(JetPlace place, double x) {
   PipelineSettings settings;
   settings.scene = "two-plumes";
@@ -113,7 +113,7 @@ double middle_of_pressure(JetPlace place, double x) {
   return moment / sum;
 }
 
-TEST(ScenePlace, StaysWhenAnotherSettingChanges) {
+TEST(ScenePlace, IsKeptWhenAnotherSettingChanges) {
   PipelineSettings settings;
   settings.scene = "one-plume";
   settings.fluid.cells = 32;
@@ -130,7 +130,7 @@ TEST(ScenePlace, StaysWhenAnotherSettingChanges) {
   EXPECT_NEAR(second.world().stimulus()->place.centre.x(), 0.04, 1e-6);
 }
 
-TEST(ScenePlace, UnderTheHandThePressureIsTheSameAsUnderOneInTheMiddle) {
+TEST(ScenePlace, ThePressureIsTheSameUnderTheHandAsInTheMiddle) {
   const double middle = middle_of_pressure(JetPlace::Array, 0.0);
   EXPECT_NEAR(middle_of_pressure(JetPlace::Hand, 0.04) - 0.04, middle, 0.003);
   EXPECT_LT(middle_of_pressure(JetPlace::Array, 0.04) - 0.04, middle - 0.005);

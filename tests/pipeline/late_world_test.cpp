@@ -1,4 +1,4 @@
-// Steps that begin late, in real time.
+// Steps that start late, in real time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace prostm {
 namespace {
 
-/// A world without pressure, of which every `each`th step takes long.
+/// A world without pressure; every `each`th step takes long.
 class SlowWorld final : public World, public PressureSource {
  public:
   SlowWorld(std::chrono::milliseconds stall, int each) : stall_(stall), each_(each) {}
@@ -38,7 +38,7 @@ class Nobody final : public RunObserver {
   bool on_progress(double) override { return true; }
 };
 
-/// Steps of a run of 15 that are skipped where every `each`th stalls; by itself one in the middle.
+/// Skipped steps in a run of 15 in which every `each`th stalls; by default one in the middle.
 std::int64_t skipped_after(std::chrono::milliseconds stall, int each = 8) {
   PipelineSettings settings;
   Pipeline pipeline(settings, make_scripted_hand(settings.scripted_hand, settings.track),
@@ -49,7 +49,7 @@ std::int64_t skipped_after(std::chrono::milliseconds stall, int each = 8) {
   return s.skipped_world_steps;
 }
 
-TEST(LateWorld, MakesUpForADelayOfLessThanThreeSteps) {
+TEST(LateWorld, CatchesUpAfterADelayOfLessThanThreeSteps) {
   for (const int stall : {48, 70}) {
     // the machine itself may wake a thread late
     std::int64_t fewest = 15;
@@ -59,12 +59,12 @@ TEST(LateWorld, MakesUpForADelayOfLessThanThreeSteps) {
   }
 }
 
-TEST(LateWorld, LetsStepsGoWhereEachTakesTooLong) {
-  // 25 of 20 ms: a step is lost as soon as two in a row begin later and later
+TEST(LateWorld, SkipsStepsWhenEachTakesTooLong) {
+  // 25 ms instead of 20: a step is skipped once two in a row start later and later
   EXPECT_GE(skipped_after(std::chrono::milliseconds(25), 1), 1);
 }
 
-TEST(LateWorld, LetsStepsGoRatherThanRunAfterTheClock) {
+TEST(LateWorld, SkipsStepsRatherThanLagBehindTheClock) {
   EXPECT_GE(skipped_after(std::chrono::milliseconds(90)), 3);
 }
 

@@ -21,18 +21,18 @@ WorldFrame contact_taken_at(double time, double age) {
   WorldFrame contact;
   contact.arrival = time - age;
   contact.due = contact.taken = time;
-  contact.track_time = 0.001;  // stages take time even without a clock
+  contact.track_time = 0.001;  // stages take time even in a stepped run
   contact.meet_time = 0.003;
   return contact;
 }
 
-TEST(LatencyLog, WithoutAClockIsWhatOneComputesByHand) {
+TEST(LatencyLog, WithoutAClockMatchesAHandCalculation) {
   SimulatedArraySettings settings;
   settings.realtime = false;
   const SimulatedArray device(settings, usx_array(), Medium{});
   LatencyLog log(false);
   EXPECT_FALSE(log.last().has_value());
-  // taken at 100 ms from a 4 ms old frame; blocks from sample 4040 (101 ms) on know the plan, the
+  // taken at 100 ms from a 4 ms old frame; blocks from sample 4040 (101 ms) on use the plan, the
   // first path follows it from sample 5000 (125 ms) on, redrawn at 5800 (145 ms)
   PlanFrame plan;
   plan.id = 7;
@@ -51,7 +51,7 @@ TEST(LatencyLog, WithoutAClockIsWhatOneComputesByHand) {
   EXPECT_NEAR(sum(last), last.total, 1e-12);
   EXPECT_NEAR(log.redraw().p50, 0.049, 1e-12);
 
-  // never redrawn: counts for the latency only
+  // never redrawn: only the latency counts
   plan.id = 8;
   log.plan(contact_taken_at(0.14, 0.0), plan, 0.0);
   log.follow({8, 5600, 5600, -1}, device);
@@ -66,9 +66,9 @@ TEST(LatencyLog, PartsOfAClockedPlanAddUp) {
   SimulatedArray device(settings.devices.of<SimulatedArraySettings>(), usx_array(), Medium{});
   PlanStage plans(settings, 1, 1.0, device.info(), nullptr);  // a silent source for the device
   ASSERT_EQ(device.start(plans.emitter()), DeviceStatus::Running);
-  device.stop();  // its schedule stays, and stops shifting
-  // the run began half a second before the device; its hands were taken 2 ms late, and a frame of
-  // the tracker had arrived 1 ms after the step was due
+  device.stop();  // its schedule stays, without further shifts
+  // the run began half a second before the device; its hands were sampled 2 ms late, and the
+  // tracker's frame had arrived 1 ms after the step was due
   const double run_start = device.play_time(0) - 0.5;
   WorldFrame contact = contact_taken_at(0.6, 0.0);
   contact.due = 0.598;
@@ -106,7 +106,7 @@ TEST(LatencyLog, NamesEachPartOnce) {
   EXPECT_EQ(names.size(), static_cast<std::size_t>(kLatencyParts));
 }
 
-/// Hands of a constant age.
+/// Hands of constant age.
 class OldHand final : public HandSource {
  public:
   OldHand(std::unique_ptr<HandSource> hand, double age) : hand_(std::move(hand)), age_(age) {}
@@ -148,7 +148,7 @@ void expect_means_add_up(const RunSummary& s) {
   EXPECT_NEAR(parts, s.latency.mean, 1e-9);
 }
 
-TEST(RunLatency, SteppedCountsTheAgeAndTheLapAlone) {
+TEST(RunLatency, SteppedRunsCountOnlyTheAgeAndTheLap) {
   const RunSummary young = run_with(RunMode::Stepped, 0.0, SwitchAt::Lap),
                    old = run_with(RunMode::Stepped, 0.003, SwitchAt::Lap);
   ASSERT_GT(young.latency.n, 10u);
@@ -174,7 +174,7 @@ TEST(RunLatency, SwitchNowDoesNotWaitForLaps) {
   EXPECT_GT(s.emit.laps_cut, 10);
 }
 
-TEST(RunLatency, OfARealTimeRunAddsUp) {
+TEST(RunLatency, PartsOfARealTimeRunAddUp) {
   const RunSummary s = run_with(RunMode::RealTime, 0.003, SwitchAt::Lap);
   ASSERT_GT(s.latency.n, 0u);
   expect_means_add_up(s);

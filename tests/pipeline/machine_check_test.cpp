@@ -1,4 +1,4 @@
-/// The answer about a machine, from trials that held their rates or did not.
+/// The verdict on a machine, from trials that met their rates or did not.
 
 #include "prostm/pipeline/realtime/machine_check.hpp"
 
@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// Five seconds of a setup.
+/// Five seconds with one set of options.
 Trial trial(const CheckedSetup& setup, bool holds) {
   Trial trial;
   trial.setup = setup;
@@ -34,7 +34,7 @@ Trial trial(const CheckedSetup& setup, bool holds) {
   return trial;
 }
 
-/// The answer of a machine that holds what takes at most this grid and preset.
+/// The verdict on a machine that is just fast enough for this grid and preset.
 MachineAnswer of_machine(int cells, Preset preset, const std::vector<std::string>& scenes) {
   std::vector<Trial> trials;
   for (const CheckedSetup& setup : checked_setups(scenes)) {
@@ -45,7 +45,7 @@ MachineAnswer of_machine(int cells, Preset preset, const std::vector<std::string
   return answer_of(trials, scenes);
 }
 
-TEST(MachineCheck, BeginsWithTheDefaultsAndGetsCheaper) {
+TEST(MachineCheck, StartsWithTheDefaultsAndGetsCheaper) {
   for (const auto& scenes : {stimulus_scenes(), {"four-plumes"}, {"ring"}}) {
     const auto setups = checked_setups(scenes);
     const PipelineSettings defaults;
@@ -64,7 +64,7 @@ TEST(MachineCheck, TriesOnlyGridsThatKeepTheStimulus) {
   }
 }
 
-TEST(MachineCheck, TellsTheSlackOfTheDefaults) {
+TEST(MachineCheck, ReportsTheSlackOfTheDefaults) {
   const MachineAnswer answer = of_machine(64, Preset::Best, stimulus_scenes());
   EXPECT_TRUE(answer.defaults_hold);
   ASSERT_TRUE(answer.use);
@@ -77,10 +77,10 @@ TEST(MachineCheck, TellsTheSlackOfTheDefaults) {
                   "99th percentile, of 20; a plan takes 2.1 and 3.0 ms, of 40."));
 }
 
-TEST(MachineCheck, TellsWhatToUseInWhichScene) {
+TEST(MachineCheck, ReportsTheOptionsForEachScene) {
   const MachineAnswer answer = of_machine(48, Preset::Best, stimulus_scenes());
   EXPECT_FALSE(answer.defaults_hold);
-  EXPECT_FALSE(answer.use) << "no option is for all scenes";
+  EXPECT_FALSE(answer.use) << "no option suits all scenes";
   EXPECT_THAT(
       answer.sentences,
       ElementsAre(
@@ -95,7 +95,7 @@ TEST(MachineCheck, TellsWhatToUseInWhichScene) {
   }
 }
 
-// on machines of every speed
+// on machines of any speed
 TEST(MachineCheck, EveryOptionKeepsTheStimulusOfItsScene) {
   for (const int cells : {20, 32, 40, 48, 56, 64}) {
     for (const SceneAnswer& of : of_machine(cells, Preset::Best, stimulus_scenes()).scenes) {
@@ -119,7 +119,7 @@ TEST(MachineCheck, AnswersForOneScene) {
               "Use --grid 40 --preset best in ring.");
 }
 
-TEST(MachineCheck, TellsThatNothingHolds) {
+TEST(MachineCheck, ReportsThatNothingIsFastEnough) {
   const MachineAnswer answer = of_machine(0, Preset::Best, stimulus_scenes());
   EXPECT_FALSE(answer.use);
   EXPECT_THAT(answer.sentences,
@@ -128,7 +128,7 @@ TEST(MachineCheck, TellsThatNothingHolds) {
   EXPECT_THAT(answer_of({}, {}).sentences, ElementsAre(StartsWith("Nothing was tried")));
 }
 
-TEST(MachineCheck, LooksAtTheMachine) {
+TEST(MachineCheck, InspectsTheMachine) {
   const Machine machine = look_at_machine(0.05);
   EXPECT_GE(machine.cores, 1);
   EXPECT_FALSE(machine.vectors.empty());

@@ -1,4 +1,4 @@
-// A device unknown to the project, through the whole pipeline: an example of how to write one.
+// A device unknown to prostm, in the whole pipeline: an example of how to write one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ struct Onlooker final : RunObserver {
   bool on_progress(double) override { return true; }
 };
 
-TEST(OtherDevice, IsPlayedInStepsAndInRealTime) {
+TEST(OtherDevice, IsPlayedInSteppedAndRealTimeRuns) {
   PipelineSettings settings;
   settings.fluid.cells = 32;
   for (const RunMode mode : {RunMode::Stepped, RunMode::RealTime}) {
@@ -56,7 +56,7 @@ TEST(OtherDevice, IsPlayedInStepsAndInRealTime) {
   }
 }
 
-TEST(OtherDevice, OneThatKeepsTimeIsRefusedWithoutAClock) {
+TEST(OtherDevice, ARealTimeDeviceIsRejectedInASteppedRun) {
   std::vector<FocusSample> kept;
   const OtherDevice clocked(true, kept), stepped(false, kept);
   for (const RunMode mode : {RunMode::Stepped, RunMode::AsFastAsPossible}) {

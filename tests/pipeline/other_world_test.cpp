@@ -1,4 +1,4 @@
-// A world that a caller makes, through the whole pipeline.
+// A world of another program, in the whole pipeline.
 #include <gtest/gtest.h>
 
 #include "prostm/device/simulated/simulated_array.hpp"
@@ -23,7 +23,7 @@ class Plate final : public World, public PressureSource {
   GridShape grid_{64, 64, 64, 0.36 / 64, Vec3(-0.18, -0.18, 0.0)};
 };
 
-TEST(OtherWorld, IsFelt) {
+TEST(OtherWorld, IsRendered) {
   PipelineSettings settings;
   settings.devices.of<SimulatedArraySettings>().realtime = false;
   Pipeline pipeline(settings, make_scripted_hand(settings.scripted_hand, settings.track),

@@ -44,7 +44,7 @@ class NoHand final : public HandSource {
   }
 };
 
-/// Keeps every plan that it sees.
+/// Keeps every plan that it receives.
 class Keeper final : public RunObserver {
  public:
   explicit Keeper(int stop_after = 1 << 30) : stop_after_(stop_after) {}
@@ -88,7 +88,7 @@ Keeper run_keeping(Method method, RunMode mode, RunSummary& summary,
   return keeper;
 }
 
-/// Tests of both methods.
+/// Tests for both methods.
 class EachMethod : public testing::TestWithParam<Method> {};
 
 INSTANTIATE_TEST_SUITE_P(Pipeline, EachMethod, testing::Values(Method::ProStm, Method::Am),
@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Pipeline, EachMethod, testing::Values(Method::ProStm, M
                            return std::string(method.param == Method::Am ? "am" : "pro_stm");
                          });
 
-TEST_P(EachMethod, ThreadedRunEqualsSteppedRunToTheBit) {
+TEST_P(EachMethod, ThreadedRunEqualsSteppedRunBitForBit) {
   RunSummary stepped, threaded;
   std::vector<FocusSample> a, b;
   const Keeper first = run_keeping(GetParam(), RunMode::Stepped, stepped, a);
@@ -149,7 +149,7 @@ TEST_P(EachMethod, TheFociFollowTheSkinAndFadeWhenTheHandLeaves) {
   double silent_since = 0.0;
   std::int64_t seen = 0;
   // a step plays plans from the hands of the three steps before it, and from a fourth while a focal
-  // point changes paths
+  // point moves to another path
   std::vector<Eigen::AlignedBox3d> recent;
   while (pipeline.time() < 7.0) {
     pipeline.step(0.02);
@@ -182,7 +182,7 @@ TEST_P(EachMethod, TheFociFollowTheSkinAndFadeWhenTheHandLeaves) {
   EXPECT_TRUE(left);
 }
 
-TEST(Pipeline, StopsWhenTheObserverSaysSo) {
+TEST(Pipeline, StopsAtTheObserversRequest) {
   for (const RunMode mode : {RunMode::Stepped, RunMode::AsFastAsPossible}) {
     const PipelineSettings settings = small_settings(false);
     Pipeline pipeline(settings, scripted(settings));
@@ -205,7 +205,7 @@ TEST(Pipeline, RealTimeRunAccountsForEveryStep) {
   EXPECT_FALSE(s.stopped);
 }
 
-TEST(Pipeline, PlansWithTheWidthOfTheArrayWhereItIsAskedTo) {
+TEST(Pipeline, UsesTheArraysWidthIfConfigured) {
   PipelineSettings settings = small_settings(false);
   EXPECT_TRUE(plan_settings(settings, settings.emission_rate()).widths.empty());
   settings.array_width = true;
@@ -213,7 +213,7 @@ TEST(Pipeline, PlansWithTheWidthOfTheArrayWhereItIsAskedTo) {
   EXPECT_NEAR(widths.at(0.2, 0.0, 0.0), 4.3e-3, 0.1e-3);
   EXPECT_GT(widths.at(0.3, 0.0, 0.0), 1.3 * widths.at(0.2, 0.0, 0.0));
 
-  // and its plans differ
+  // and the plans differ
   const auto first_plan = [](const PipelineSettings& s) {
     Pipeline pipeline(s, make_scripted_hand(s.scripted_hand, s.track));
     for (int step = 0; step < 400; ++step) {

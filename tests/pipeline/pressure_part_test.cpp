@@ -1,4 +1,4 @@
-/// The pressure of the smoke and that of the hand's own movement, apart.
+/// The pressure of the smoke, separated from that of the hand's own movement.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ PipelineSettings settings_of(PressurePart part, const char* scene = "four-plumes
   settings.scene = scene;
   settings.fluid.cells = 32;
   settings.fluid_pressure.part = part;
-  settings.jets.trim_rate = 0.0;  // the trim hears the part that is felt
+  settings.jets.trim_rate = 0.0;  // the trim follows the selected part
   return settings;
 }
 
@@ -52,7 +52,7 @@ double most(const std::vector<std::vector<double>>& all) {
   return out;
 }
 
-TEST(PressurePart, AStillHandFeelsTheSmokeAlone) {
+TEST(PressurePart, AHandAtRestFeelsTheSmokeAlone) {
   const auto all = pressures(settings_of(PressurePart::All), true);
   const auto smoke = pressures(settings_of(PressurePart::Smoke), true);
   const auto movement = pressures(settings_of(PressurePart::Movement), true);
@@ -69,7 +69,7 @@ TEST(PressurePart, InStillAirAMovingHandFeelsItsMovementAlone) {
   EXPECT_GT(most(pressures(settings_of(PressurePart::Movement), false)), 0.0);
 }
 
-// targets clamp pressures at 0, so the parts add up where neither is clamped
+// targets clamp pressures at 0, so the parts add up only where neither is clamped
 TEST(PressurePart, PartsAddUp) {
   const auto all = pressures(settings_of(PressurePart::All), false);
   const auto smoke = pressures(settings_of(PressurePart::Smoke), false);
@@ -87,7 +87,7 @@ TEST(PressurePart, PartsAddUp) {
   EXPECT_GT(compared, 300U);
 }
 
-/// Targets with both parts, of a hand that moves through four plumes.
+/// Targets with both parts, for a hand that moves through four plumes.
 std::vector<TargetField> targets_with_parts(PressurePart felt) {
   PipelineSettings settings = settings_of(felt);
   settings.fluid_pressure.parts = true;
@@ -102,8 +102,8 @@ std::vector<TargetField> targets_with_parts(PressurePart felt) {
   return out;
 }
 
-// in one run, where each stands with its sign
-TEST(PressurePart, BothStandInTheTargets) {
+// in one run, with their signs
+TEST(PressurePart, BothAreInTheTargets) {
   for (const PressurePart felt : {PressurePart::All, PressurePart::Smoke, PressurePart::Movement}) {
     const std::vector<TargetField> targets = targets_with_parts(felt);
     ASSERT_GE(targets.size(), 10U);
@@ -129,7 +129,7 @@ TEST(PressurePart, BothStandInTheTargets) {
   }
 }
 
-TEST(PressurePart, NoneStandsInTheTargetsUnlessItIsComputed) {
+TEST(PressurePart, NoneIsInTheTargetsUnlessComputed) {
   WorldStage stage(settings_of(PressurePart::All), make_study_hand({}));
   WorldFrame frame;
   for (int step = 1; step <= 4; ++step) stage.run(step, 0.02 * step, 0.02, frame);

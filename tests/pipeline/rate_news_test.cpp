@@ -6,7 +6,7 @@
 namespace prostm {
 namespace {
 
-/// Returns the news of a run where each second makes so many of its steps.
+/// Returns the messages of a run that makes these numbers of steps in each second.
 std::vector<std::string> told(const std::vector<int>& steps_of_each_second, double step_time = 7e-3,
                               double plan_time = 4e-3) {
   RateNews news;
@@ -27,13 +27,13 @@ std::vector<std::string> told(const std::vector<int>& steps_of_each_second, doub
   return all;
 }
 
-TEST(RateNews, SaysNothingWhileRatesAreHeld) {
+TEST(RateNews, IsEmptyWhileRatesAreMet) {
   EXPECT_TRUE(told(std::vector<int>(30, 50)).empty());
-  // a hiccup
+  // a short delay
   EXPECT_TRUE(told({50, 50, 50, 46, 50, 50, 50, 50, 50, 50, 50, 50}).empty());
 }
 
-TEST(RateNews, TellsWhatIsMissedAndWhatToTurnDownOnce) {
+TEST(RateNews, ReportsMissedRatesWithAdviceOnce) {
   using testing::ElementsAre;
   using testing::HasSubstr;
   EXPECT_THAT(told(std::vector<int>(30, 40), 24e-3),
@@ -44,8 +44,8 @@ TEST(RateNews, TellsWhatIsMissedAndWhatToTurnDownOnce) {
   EXPECT_THAT(told(std::vector<int>(30, 40)), ElementsAre(HasSubstr("Close other programs")));
 }
 
-// seconds in which the machine is slow and seconds in which it is slower
-TEST(RateNews, NamesOneOptionInARun) {
+// seconds in which the machine is slow, and seconds in which it is slower
+TEST(RateNews, SuggestsOneOptionPerRun) {
   RateNews news;
   std::vector<std::string> all;
   WorldFrame contact;
@@ -69,14 +69,14 @@ TEST(RateNews, NamesOneOptionInARun) {
   }
   ASSERT_EQ(all.size(), 6U);
   for (const std::size_t i : {0U, 2U, 4U}) EXPECT_THAT(all[i], testing::HasSubstr("se --grid 48"));
-  // what was advised is done
+  // the advice has been followed
   run_for(12.0, 40, 24e-3);
   settings.fluid.cells = 48;
   run_for(12.0, 40, 24e-3);
   EXPECT_THAT(all.back(), testing::HasSubstr("Use --grid 32"));
 }
 
-TEST(RateNews, TellsThatTheyAreHeldAgain) {
+TEST(RateNews, ReportsThatRatesAreMetAgain) {
   std::vector<int> seconds(12, 40);
   seconds.insert(seconds.end(), 12, 50);
   const auto all = told(seconds);
@@ -84,7 +84,7 @@ TEST(RateNews, TellsThatTheyAreHeldAgain) {
   EXPECT_EQ(all[1], "The rates are held again.");
 }
 
-// AM plans on every step, PRO-STM on every second
+// AM plans at every step, PRO-STM at every second one
 TEST(RateNews, AnotherMethodHasOtherRates) {
   RateNews news;
   PipelineSettings settings;

@@ -1,4 +1,4 @@
-/// Ends of runs: if anything fails on any thread, all threads end, the output fades, and the
+/// How runs end: if anything fails on any thread, all threads end, the output fades, and the
 /// failure is reported.
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 namespace prostm {
 namespace {
 
-constexpr double kTooLong = 3600.0;  // run time that no test reaches [s]
+constexpr double kTooLong = 3600.0;  // later than any test runs [s]
 
 PipelineSettings settings_for(RunMode mode) {
   PipelineSettings s;
@@ -30,7 +30,7 @@ PipelineSettings settings_for(RunMode mode) {
   return s;
 }
 
-/// The scripted hand, which fails at a given time.
+/// The scripted hand, which fails at a set time.
 class FailingHand final : public HandSource {
  public:
   FailingHand(const PipelineSettings& s, double at)
@@ -45,13 +45,13 @@ class FailingHand final : public HandSource {
   const double at_;
 };
 
-/// Acts at the first plan that sounds: throws, or stops the run.
+/// Acts at the first plan with output: throws, or stops the run.
 class Ender final : public RunObserver {
  public:
   enum class By { Throwing, ThrowingInProgress, Stopping, Nothing };
   explicit Ender(By by) : by_(by) {}
   bool on_plan(const WorldFrame&, const PlanFrame& plan) override {
-    EXPECT_FALSE(ended_) << "nobody is told anything after the end";
+    EXPECT_FALSE(ended_) << "no call after the end";
     sounding_ += plan.status == PlanStatus::Planned ? 1 : 0;
     if (sounding_ < 3) return true;
     if (by_ == By::Throwing) end();
@@ -82,8 +82,8 @@ std::string what(const RunSummary& summary) {
   }
 }
 
-/// Checks that the device is stopped, and that its output sounded, fell silent without a jump, and
-/// stayed silent.
+/// Checks that the device is stopped, and that its output was on, fell silent without a jump,
+/// and stayed silent.
 void expect_faded(const Pipeline& made) {
   const SimulatedArray& device = test::simulated(const_cast<Pipeline&>(made));
   EXPECT_EQ(device.status(), DeviceStatus::Idle);
@@ -157,7 +157,7 @@ TEST_P(RunEnds, WhenTheDeviceVanishes) {
   faults.vanish_after = 300;
   test::simulated(pipeline_).set_faults(faults);
   EXPECT_EQ(what(run_until(Ender::By::Nothing)),
-            "The simulated array vanished after 300 blocks, as it was told to; start it again.");
+            "The simulated array vanished after 300 blocks, as requested; start it again.");
 }
 
 TEST(RunEnd, AModulationFadesToo) {
@@ -171,7 +171,7 @@ TEST(RunEnd, AModulationFadesToo) {
   expect_faded(pipeline);
 }
 
-TEST(RecentRate, IsOfTheLastSecondOrOfWhatThereIs) {
+TEST(RecentRate, CoversTheLastSecondOrTheShorterHistory) {
   RecentRate rate;
   EXPECT_EQ(rate.rate(), 0.0);
   rate.add(1000.0, 7);

@@ -1,4 +1,4 @@
-/// The grids that keep the stimulus of a scene, against the worlds themselves.
+/// The grids that keep a scene's stimulus, compared with the worlds themselves.
 
 #include "prostm/pipeline/smoke/scene_grids.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Share of the updates after the air has settled in which the study hand gets the stimulus.
+/// Share of the updates, after the air has settled, in which the study hand gets the stimulus.
 double measured_share(const std::string& scene, int cells) {
   PipelineSettings settings;
   settings.scene = scene;
@@ -42,13 +42,13 @@ struct Cell {
 };
 class SceneGridsOf : public ::testing::TestWithParam<Cell> {};
 
-TEST_P(SceneGridsOf, TheTableIsWhatTheWorldDoes) {
+TEST_P(SceneGridsOf, TheTableMatchesTheWorld) {
   const auto [scene, cells] = GetParam();
   const bool keeps = *stimulus_share(scene, cells) >= kKeptShare;
   EXPECT_EQ(measured_share(scene, cells) >= kKeptShare, keeps) << scene << " at " << cells;
 }
 
-// the options that are advised first, and grids that lose the stimulus
+// the options suggested first, and grids that lose the stimulus
 INSTANTIATE_TEST_SUITE_P(Cells, SceneGridsOf,
                          ::testing::Values(Cell{"one-plume", 32}, Cell{"one-plume", 40},
                                            Cell{"two-plumes", 48}, Cell{"three-plumes", 40},
@@ -64,7 +64,7 @@ TEST(SceneGrids, CoarserGridsKeepTheStimulus) {
   EXPECT_THAT(coarser_grids("one-plume", 64), ElementsAre(56, 48, 32));
   EXPECT_THAT(coarser_grids("four-plumes", 64), ElementsAre(56));
   EXPECT_THAT(coarser_grids("four-plumes", 56), ElementsAre());
-  EXPECT_THAT(coarser_grids("ring", 64), ElementsAre(56, 48, 40, 32)) << "it has no stimulus";
+  EXPECT_THAT(coarser_grids("ring", 64), ElementsAre(56, 48, 40, 32)) << "ring has no stimulus";
   EXPECT_THAT(coarser_grids("wind", 100), ElementsAre(64, 56, 48, 40, 32));
   EXPECT_EQ(finer_grid("four-plumes", 32), 56);
   EXPECT_EQ(finer_grid("one-plume", 40), 48);
@@ -80,7 +80,7 @@ TEST(SceneGrids, EveryStimulusIsInTheTable) {
   }
 }
 
-TEST(SceneGrids, OtherSettingsThanMeasuredAreUnknown) {
+TEST(SceneGrids, SettingsThatWereNotMeasuredAreUnknown) {
   PipelineSettings settings;
   settings.scene = "four-plumes";
   EXPECT_EQ(grid_effect(settings, 56), GridEffect::Keeps);
@@ -89,7 +89,7 @@ TEST(SceneGrids, OtherSettingsThanMeasuredAreUnknown) {
   settings.jets.place = JetPlace::Hand;
   settings.fluid_pressure.parts = true;
   settings.plan.preset = Preset::Fast;
-  EXPECT_EQ(grid_effect(settings, 56), GridEffect::Keeps) << "nothing of these is in the target";
+  EXPECT_EQ(grid_effect(settings, 56), GridEffect::Keeps) << "none of these affects the target";
   const std::function<void(PipelineSettings&)> changes[] = {
       [](auto& s) { s.fluid.width = 0.3; },
       [](auto& s) { s.fluid.jet_speed = 1.2; },
@@ -105,7 +105,7 @@ TEST(SceneGrids, OtherSettingsThanMeasuredAreUnknown) {
     change(changed);
     EXPECT_EQ(grid_effect(changed, 56), GridEffect::Unknown);
     changed.scene = "ring";
-    EXPECT_EQ(grid_effect(changed, 56), GridEffect::Keeps) << "nothing is asked of it";
+    EXPECT_EQ(grid_effect(changed, 56), GridEffect::Keeps) << "no stimulus is required";
   }
 }
 

@@ -1,5 +1,5 @@
-/// The scenes on a flat closed hand: the figures of the paper's Fig. 3, and the same
-/// force by all.
+/// The scenes on a flat closed hand: the figures of the paper's Fig. 3, all with the same
+/// force.
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(Hands, Scenes,
                                            Held{"four-plumes", {.size = 1.1}},
                                            Held{"one-plume", {.size = 1.1}}));
 
-/// Targets of the study hand, after the air has settled.
+/// Targets of the study hand, once the air has settled.
 std::vector<TargetFrame> targets_of(const std::string& scene, double settle, double seconds) {
   PipelineSettings settings;
   settings.scene = scene;
@@ -75,7 +75,7 @@ std::vector<TargetFrame> targets_of(const std::string& scene, double settle, dou
   return targets;
 }
 
-/// The largest pressure within `radius` of a place over the palm joint of the study hand.
+/// The largest pressure within `radius` of a point above the palm joint of the study hand.
 double most_around(const TargetField& patch, const Vec2& p_D, double radius) {
   double most = 0.0;
   for (std::size_t cell = 0; cell < patch.size(); ++cell) {
@@ -112,7 +112,7 @@ TEST(SceneList, SomeSwellAndFall) {
   }
 }
 
-// so that strength does not tell them apart
+// so that their strengths do not distinguish them
 TEST(SceneList, OneAndFourPlumesHaveTheSameFullScale) {
   EXPECT_EQ(scene_from_name("one-plume").full_scale_pressure,
             scene_from_name("four-plumes").full_scale_pressure);

@@ -1,4 +1,4 @@
-// Silence: how long the array sounds after each of what must end it, by the clock.
+// How long the array keeps emitting after each event that must silence it, in real time.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -25,11 +25,11 @@ using test::eventually;
 
 constexpr double kStated = 0.050, kSilent = 0.110;  // [s]
 constexpr double kNever = 1e9;                      // [s]
-constexpr float kLargestChange = 0.02505F;          // of an intensity, between two samples
+constexpr float kLargestChange = 0.02505F;          // of an intensity, between samples
 
-/// Checks that an event silences the array in time. The load of the machine only lengthens what is
-/// seen by the clock, so one of a few trials must be in time; none may click.
-/// @param trial returns how long after the event the last sound was handed over [s].
+/// Checks that an event silences the array in time. Load on the machine only lengthens the measured
+/// time, so one of a few trials must be in time. None may click.
+/// @param trial returns the time from the event to the last non-zero sample handed over [s].
 template <class Trial>
 void expect_silence(const char* event, double within, const Trial& trial) {
   double least = kNever;
@@ -43,7 +43,7 @@ void expect_silence(const char* event, double within, const Trial& trial) {
   EXPECT_LE(least, within) << event;
 }
 
-/// An array that takes a block each millisecond, and notes when it was last handed a sound.
+/// An array that takes a block each millisecond, and records when it last got a non-zero one.
 class NotedArray final : public Device {
  public:
   NotedArray() {
@@ -80,14 +80,14 @@ class NotedArray final : public Device {
   bool is_hot() const override { return hot; }
 
   bool sounds() const { return steady_now() - last_sound < 0.005 && loud; }
-  /// Waits until it sounds; false if it never does.
+  /// Waits until it emits; false if it never does.
   bool sounding() const {
     return eventually([this] { return sounds(); });
   }
 
   std::atomic<bool> hot{false}, running{false}, loud{false};
   std::atomic<double> last_sound{-kNever};  // handed over [s of the clock]
-  std::atomic<float> largest_change{0.0F};  // of an intensity, between two samples
+  std::atomic<float> largest_change{0.0F};  // of an intensity, between samples
   std::atomic<bool> finite{true};
 
  private:
@@ -122,7 +122,7 @@ class NotedArray final : public Device {
   std::atomic<double> started_{0.0};
 };
 
-/// The scripted hand, held still, until it is told otherwise.
+/// The scripted hand, held still until told otherwise.
 class Told final : public HandSource {
  public:
   explicit Told(const PipelineSettings& s) : hand_(make_scripted_hand(s.scripted_hand, s.track)) {}
@@ -173,7 +173,7 @@ PipelineSettings small_and_still() {
   return settings;
 }
 
-/// A run in real time that sounds.
+/// A run in real time with output.
 struct SoundingRun {
   SoundingRun() {
     auto told = std::make_unique<Told>(settings);
@@ -189,12 +189,12 @@ struct SoundingRun {
     observer.stop = true;
     if (thread.joinable()) thread.join();
   }
-  /// Waits until nothing has sounded for a while. Returns the time of the last sound after `since`.
+  /// Waits until it has been silent for a while. Returns the time of the last sound after `since`.
   double silence_after(double since) const {
     EXPECT_TRUE(eventually([this] { return steady_now() - device->last_sound > 0.2; }));
     return device->last_sound - since;
   }
-  /// The same, and that nothing clicked.
+  /// The same; also checks that nothing clicked.
   double faded_after(double since) const {
     const double after = silence_after(since);
     EXPECT_LE(device->largest_change, kLargestChange);
@@ -212,7 +212,7 @@ struct SoundingRun {
   std::jthread thread;
 };
 
-TEST(Silence, FollowsWhenTheHandGoesAndWhenSomebodyMutes) {
+TEST(Silence, FollowsALostHandAndAMute) {
   SoundingRun run;
   expect_silence("hand gone", kStated, [&] {
     run.hands->gone = false;
@@ -233,7 +233,7 @@ TEST(Silence, FollowsWhenTheHandGoesAndWhenSomebodyMutes) {
   EXPECT_TRUE(run.device->sounding());
 }
 
-TEST(Silence, FollowsWhenTheDeviceIsHotUntilItHasCooled) {
+TEST(Silence, LastsUntilAHotDeviceHasCooled) {
   SoundingRun run;
   expect_silence("device hot", kStated, [&] {
     run.device->hot = false;
@@ -246,11 +246,11 @@ TEST(Silence, FollowsWhenTheDeviceIsHotUntilItHasCooled) {
   const double cooled = steady_now();
   run.device->hot = false;
   ASSERT_TRUE(run.device->sounding());
-  EXPECT_GE(steady_now() - cooled, 0.9) << "a flag that flickers does not pulse the array";
+  EXPECT_GE(steady_now() - cooled, 0.9) << "a flickering flag must not pulse the array";
   EXPECT_FALSE(run.mute->on(MuteReason::Hot));
 }
 
-TEST(Silence, FollowsWhenPlansStall) {
+TEST(Silence, FollowsAStallOfThePlans) {
   SoundingRun run;
   expect_silence("plans stall, from the last plan", kSilent, [&] {
     EXPECT_TRUE(eventually([&] { return !run.hands->blocks && run.device->sounds(); }));
@@ -264,7 +264,7 @@ TEST(Silence, FollowsWhenPlansStall) {
   EXPECT_LE(run.device->largest_change, kLargestChange);
 }
 
-TEST(Silence, FollowsAStopThoughAThreadOfTheRunIsHeldUp) {
+TEST(Silence, FollowsAStopEvenIfAThreadHangs) {
   expect_silence("stopped while hands are held up", kStated, [] {
     SoundingRun run;
     EXPECT_TRUE(run.device->sounding());
@@ -276,7 +276,7 @@ TEST(Silence, FollowsAStopThoughAThreadOfTheRunIsHeldUp) {
   });
 }
 
-TEST(Silence, FollowsWhenAStageFails) {
+TEST(Silence, FollowsTheFailureOfAStage) {
   expect_silence("hands throw", kStated, [] {
     SoundingRun run;
     EXPECT_TRUE(run.device->sounding());
@@ -330,14 +330,14 @@ TEST(Silence, FollowsAPlanThatIsNotFinite) {
   }
 }
 
-/// Findings of a child process.
+/// Results of a child process.
 struct Seen {
   double after = kNever;  // [s]
   float change = 1.0F;
   bool sounded = false, ended = false;
 };
 
-/// A run in a process of its own, since a second signal ends a process at once.
+/// A run in its own process, since a second signal ends a process at once.
 Seen seen_after(int signal) {
   std::array<int, 2> ends{};
   if (pipe(ends.data()) != 0) return {};
@@ -365,7 +365,7 @@ Seen seen_after(int signal) {
   return seen;
 }
 
-TEST(Silence, FollowsEachSignalAsAFade) {
+TEST(Silence, FollowsEachSignalWithAFade) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     expect_silence(strsignal(signal), kStated, [signal] {
       const Seen seen = seen_after(signal);

@@ -1,5 +1,5 @@
 #pragma once
-/// The simulated array of a pipeline that uses it.
+/// Access to the simulated array of a pipeline that uses it.
 
 #include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/pipeline.hpp"

@@ -10,7 +10,7 @@
 namespace prostm {
 namespace {
 
-/// Returns a plan for a contact so small that pressures along its path change fast.
+/// Returns a plan for a contact so small that pressures along its path change rapidly.
 PlanSnapshot small_contact() {
   PlanSnapshot s;
   s.target.patches.emplace_back();
@@ -32,7 +32,7 @@ PlanSnapshot small_contact() {
   return s;
 }
 
-TEST(RenderedPlan, IsWhatIsPlayedAtTheSessionsFullScale) {
+TEST(RenderedPlan, IsThePlayedFieldAtTheSessionsFullScale) {
   PlanSnapshot s = small_contact();
   ASSERT_TRUE(s.planned);
   const TargetField& field = s.target.patches[0];
@@ -48,13 +48,13 @@ TEST(RenderedPlan, IsWhatIsPlayedAtTheSessionsFullScale) {
         score_plan(field, s.plan, 0, s.settings->plan.sigma, s.settings->plan.gain_law(), &played);
     EXPECT_EQ(out.metrics.rmse, expected.rmse);
     EXPECT_EQ(out.metrics.skill_8, expected.skill_8);
-    // pressures that the device cannot play are missing from the picture too
+    // pressures that the device cannot play are missing here too
     EXPECT_GT(out.metrics.rmse, 1.2 * rmse);
     rmse = out.metrics.rmse;
   }
 }
 
-TEST(RenderedPlan, IsAtTheArraysWidthAndAtTheSettings) {
+TEST(RenderedPlan, UsesTheArraysWidthOrTheSettings) {
   PlanSnapshot s = small_contact();
   s.full_scale_pressure = 1.4 * max_pressure(s.target.patches[0]);
   RenderedPlan wide, narrow;

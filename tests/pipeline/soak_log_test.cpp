@@ -1,4 +1,4 @@
-// The dips of made-up long runs, and the causes that they are given.
+// The dips of synthetic long runs, and the causes assigned to them.
 
 #include "prostm/pipeline/realtime/soak_log.hpp"
 
@@ -13,15 +13,15 @@ using testing::HasSubstr;
 
 constexpr double kSeconds = 90.0;
 
-/// A soak that looks every 2 ms, and at the machine every 250 ms.
+/// A soak test that samples the counters every 2 ms and the machine every 250 ms.
 struct Soak {
   explicit Soak(bool load = true) : log(kSeconds, load, 2) { log.use(0.0, {}); }
 
-  /// Goes on to a time, with a change of the counters or of the machine on the way.
+  /// Advances to a time, optionally with a change of the counters or of the machine.
   void to(double end, const std::function<void(SoakCounts&, MachineUse&)>& change = {}) {
     if (change) change(counts, use);
     for (; time < end; time += 0.002) {
-      use.busy += 0.002;  // all of it this program's
+      use.busy += 0.002;  // all of it by this program
       use.own += 0.002;
       log.count(time, counts);
       if (time - looked < 0.25) continue;
@@ -48,14 +48,14 @@ TEST(SoakLog, AQuietRunHasNoDips) {
   EXPECT_TRUE(soak.log.dips().empty() && soak.log.is_quiet_clean());
 }
 
-TEST(SoakLog, TheCountersMayHaveBegunBeforeTheRun) {
+TEST(SoakLog, CountersMayStartBeforeTheRun) {
   Soak soak;
   soak.to(1.0, [](SoakCounts& counts, MachineUse&) { counts.device.missed_blocks = 3; });
   soak.log.end(1.0, soak.use);
   EXPECT_TRUE(soak.log.dips().empty());
 }
 
-TEST(SoakLog, EveryCounterOfTheDeviceThatShouldStaySmallIsWatched) {
+TEST(SoakLog, WatchesEveryCounterOfTheDeviceThatShouldStaySmall) {
   for (const Quantity<DeviceStats>& quantity : quantities<DeviceStats>()) {
     if (quantity.better != Better::Less) continue;
     Soak soak;
@@ -89,12 +89,12 @@ TEST(SoakLog, ALateBlockIsCoveredUnlessItWasMissed) {
   EXPECT_FALSE(soak.log.is_quiet_clean());
 }
 
-TEST(SoakLog, DipsOfTheLoadedPartAreNotHeldAgainstIt) {
+TEST(SoakLog, DipsUnderTheTestLoadAreExcused) {
   Soak soak;
   soak.to(31.0);
   EXPECT_TRUE(soak.log.is_loaded_at(31.0) && !soak.log.is_loaded_at(29.0));
   soak.to(60.5, [](SoakCounts& counts, MachineUse&) { counts.skipped_steps += 4; });
-  // the load is over, the queue fills again
+  // the load is over, and the queue refills
   EXPECT_FALSE(soak.log.is_loaded_at(60.5));
   soak.to(60.9, [](SoakCounts& counts, MachineUse&) { counts.skipped_plans += 1; });
   EXPECT_TRUE(soak.log.is_quiet_clean());
@@ -139,7 +139,7 @@ TEST(SoakLog, NamesTheLikelyCause) {
               HasSubstr("the device: The link is slow."));
 }
 
-TEST(SoakLog, ASlowStepIsACauseAndRatesAreKeptForEachPart) {
+TEST(SoakLog, ASlowStepIsACauseAndRatesAreKeptPerPart) {
   Soak soak(false);
   soak.to(5.0);
   for (int step = 2; step <= 500; step += 2)
@@ -150,7 +150,7 @@ TEST(SoakLog, ASlowStepIsACauseAndRatesAreKeptForEachPart) {
   EXPECT_THAT(soak.dip().cause, HasSubstr("took 31 ms"));
 }
 
-TEST(SoakLog, KeepsARoomForDipsAndCountsTheRest) {
+TEST(SoakLog, StoresALimitedNumberOfDipsAndCountsTheRest) {
   Soak soak;
   soak.to(0.01);
   for (int i = 0; i < 12'000; ++i)
@@ -159,7 +159,7 @@ TEST(SoakLog, KeepsARoomForDipsAndCountsTheRest) {
   EXPECT_EQ(soak.log.dips().size(), SoakLog::kMostDips);
   EXPECT_EQ(soak.log.left_out() + static_cast<std::int64_t>(SoakLog::kMostDips),
             soak.log.parts()[0].dips);
-  // those of another part are kept all the same
+  // those of another part are still stored
   soak.to(66.0, [](SoakCounts& counts, MachineUse&) { counts.skipped_steps += 1; });
   ASSERT_EQ(soak.log.dips().size(), SoakLog::kMostDips + 1);
   EXPECT_EQ(soak.log.dips().back().part, 2);

@@ -1,4 +1,4 @@
-/// The gate in the line: what it says of hands that a study would have to send away.
+/// The gate in the pipeline: its sentences for hands that a study has to turn away.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace prostm {
 namespace {
 
-/// A study hand that somebody changes.
+/// A study hand that a test modifies.
 class Changed final : public HandSource {
  public:
   using Change = std::function<void(Hand&)>;
@@ -54,14 +54,14 @@ Changed::Change close() {
   };
 }
 
-// the study hand lies in the tracker's frame, whose x is the device's
+// the study hand is in the tracker's frame, whose x axis is the device's
 Changed::Change shift(double x) {
   return [x](Hand& hand) {
     for (Vec3& p : hand.position) p.x() += x;
   };
 }
 
-TEST(StudyGate, RefusesAFistATiltedHandAndOneBesideThePlumes) {
+TEST(StudyGate, RejectsAFistATiltedHandAndOneOffThePlumes) {
   const GateResult beside = judged(std::make_unique<Changed>(shift(0.04)));
   EXPECT_FALSE(beside.pass);
   EXPECT_EQ(beside.finding.problem, GateProblem::Beside);
@@ -74,7 +74,7 @@ TEST(StudyGate, RefusesAFistATiltedHandAndOneBesideThePlumes) {
   EXPECT_EQ(bent.finding.problem, GateProblem::Bent) << sentence(bent);
 }
 
-TEST(StudyGate, SaysNothingOfAirThatIsNoStimulus) {
+TEST(StudyGate, GivesNoVerdictWithoutAStimulus) {
   PipelineSettings settings;
   settings.scene = "still-air";
   settings.fluid.cells = 32;

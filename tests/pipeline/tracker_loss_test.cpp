@@ -1,4 +1,4 @@
-/// The array's output when the tracker is cut, freezes, or does not trust its own hands.
+/// The array's output when the tracker is disconnected, freezes, or has no confidence in its hands.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ using test::eventually;
 
 enum class Mode : std::uint8_t { Well, Cut, Frozen, Unsure };
 
-/// A tracker at 100 Hz with a hand that is held still, except for its noise.
+/// A tracker at 100 Hz with a hand at rest, except for its noise.
 class StandIn final : public LiveTracker {
  public:
   StandIn(const std::atomic<Mode>& mode, const PipelineSettings& s) : mode_(mode) {
@@ -54,7 +54,7 @@ class StandIn final : public LiveTracker {
   double noise_ = 3e-5;  // [m]
 };
 
-/// Hands that note the array's played samples when they disappear.
+/// Hands that record the number of samples played when they disappear.
 class Noted final : public HandSource {
  public:
   explicit Noted(std::unique_ptr<HandSource> hands) : hands_(std::move(hands)) {}
@@ -120,7 +120,7 @@ TEST_P(TrackerLoss, TheOutputFadesWithin50MillisecondsAndComesBackWithTheHand) {
     SCOPED_TRACE(static_cast<int>(fault));
     mode = Mode::Well;
     if (!eventually([&] { return hands.gone_at < 0 && sounds(); })) {
-      ADD_FAILURE() << "the hand never sounds";
+      ADD_FAILURE() << "the hand is never rendered";
       break;
     }
     mode = fault;
@@ -135,7 +135,7 @@ TEST_P(TrackerLoss, TheOutputFadesWithin50MillisecondsAndComesBackWithTheHand) {
   EXPECT_GT(status.frozen, 0);
   EXPECT_GT(status.unsure, 0);
 
-  // throughout the run, fades instead of cuts
+  // throughout the run there are fades instead of cuts
   const std::int64_t n = device.samples();
   const auto foci = static_cast<std::size_t>(device.foci());
   const std::vector<FocusSample> played = device.read_back(0, n);

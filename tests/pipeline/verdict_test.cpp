@@ -1,4 +1,4 @@
-/// The verdicts on runs of every kind, from made-up summaries.
+/// The verdicts on runs of every kind, from synthetic summaries.
 
 #include "prostm/pipeline/realtime/verdict.hpp"
 
@@ -49,7 +49,7 @@ std::vector<std::string> said(const std::function<void(RunSummary&)>& change) {
   return judged(change).sentences;
 }
 
-TEST(Verdict, AGoodRunIsToldInTwoSentences) {
+TEST(Verdict, AGoodRunTakesTwoSentences) {
   const Verdict verdict = judged([](RunSummary&) {});
   EXPECT_EQ(verdict.held, true);
   EXPECT_THAT(verdict.sentences,
@@ -58,12 +58,12 @@ TEST(Verdict, AGoodRunIsToldInTwoSentences) {
                           "Nothing was unusual."));
 }
 
-TEST(Verdict, TheSamplesAreThoseOfTheDeviceThatPlayed) {
+TEST(Verdict, SamplesAreThoseOfTheDeviceThatPlayed) {
   EXPECT_THAT(said([](RunSummary& s) { s.played_by.sample_rate = 20e3 / 3.0; }).front(),
               HasSubstr(", 6.667 samples a millisecond"));
 }
 
-TEST(Verdict, GapsAreToldByTheirMeasuredCauses) {
+TEST(Verdict, GapsAreExplainedByTheirMeasuredCauses) {
   const auto of = [](std::int64_t lost, std::int64_t slow, std::int64_t late) {
     return said([&](RunSummary& s) {
              s.played_by.block_samples = 800;
@@ -100,7 +100,7 @@ RunSummary held(std::int64_t passed) {
   return s;
 }
 
-TEST(Verdict, BeginsWithAHeldHandThatDidNotGetTheStimulus) {
+TEST(Verdict, StartsWithAHeldHandThatMissedTheStimulus) {
   PipelineSettings settings;
   settings.scene = "four-plumes";
   settings.fluid.cells = 48;
@@ -108,8 +108,8 @@ TEST(Verdict, BeginsWithAHeldHandThatDidNotGetTheStimulus) {
   EXPECT_THAT(
       verdict.sentences,
       ElementsAre("The held hand did not get the stimulus of four-plumes: 2 % of its updates "
-                  "passed the gate (at least 80 %), mostly for maxima that run into each "
-                  "other. --grid 48 is too coarse for this scene: use --grid 56.",
+                  "passed the gate (at least 80 %), mostly for maxima that merge. "
+                  "--grid 48 is too coarse for this scene: use --grid 56.",
                   StartsWith("The rates were held")));
   settings.fluid.cells = 64;
   EXPECT_THAT(verdict_of(held(28), settings).sentences.front(),
@@ -120,13 +120,13 @@ TEST(Verdict, BeginsWithAHeldHandThatDidNotGetTheStimulus) {
               StartsWith("The rates were held"));
 }
 
-TEST(Verdict, AHandThatWasHardlyHeldIsNotJudged) {
+TEST(Verdict, AHandThatWasHardlyHeldIsNotEvaluated) {
   RunSummary s = held(0);
   s.held_updates = 10;
   EXPECT_THAT(verdict_of(s, {}).sentences.front(), StartsWith("The rates were held"));
 }
 
-// what was advised while the run went on stays
+// advice given during the run is kept
 TEST(Verdict, RepeatsTheAdviceOfTheRun) {
   RunSummary s = good();
   s.world_steps = 2000;
@@ -138,7 +138,7 @@ TEST(Verdict, RepeatsTheAdviceOfTheRun) {
               AllOf(HasSubstr("Use --grid 48"), Not(HasSubstr("--grid 32"))));
 }
 
-TEST(Verdict, APageHandThatWasReleasedUnaskedIsTold) {
+TEST(Verdict, APageHandReleasedUnaskedIsReported) {
   EXPECT_THAT(said([](RunSummary& s) { s.hidden_page_hands = 2; }),
               ElementsAre(StartsWith("The rates were held"),
                           StartsWith("The page's hand was released because its page was hidden "
@@ -148,7 +148,7 @@ TEST(Verdict, APageHandThatWasReleasedUnaskedIsTold) {
                          "0.5 s (1×)"));
 }
 
-TEST(Verdict, ASlowFluidIsNamedWithTheGridThatFits) {
+TEST(Verdict, ASlowFluidIsReportedWithTheGridThatFits) {
   const Verdict verdict = judged([](RunSummary& s) {
     s.world_steps = 2610;
     s.skipped_world_steps = 390;
@@ -156,17 +156,18 @@ TEST(Verdict, ASlowFluidIsNamedWithTheGridThatFits) {
     s.world.p50 = 21.4e-3;
   });
   EXPECT_EQ(verdict.held, false);
-  EXPECT_THAT(verdict.sentences,
-              ElementsAre("The rates were not held: smoke 43.5 of 50 Hz, plans 21.8 of 25 Hz. "
-                          "A step takes 23.0 ms (median) and has 20 ms. Use --grid 48, which keeps "
-                          "the stimulus of one-plume, or close other programs."));
+  EXPECT_THAT(
+      verdict.sentences,
+      ElementsAre("The rates were not held: smoke 43.5 of 50 Hz, plans 21.8 of 25 Hz. "
+                  "A step takes 23.0 ms (median); the budget is 20 ms. Use --grid 48, which keeps "
+                  "the stimulus of one-plume, or close other programs."));
   // no grid is coarse enough
   EXPECT_THAT(said([](RunSummary& s) {
                 s.world_steps = 1000;
                 s.skipped_world_steps = 2000;
                 s.world.p50 = 200e-3;
               }).front(),
-              AllOf(HasSubstr("has 20 ms. No option is fast enough and keeps the stimulus of "
+              AllOf(HasSubstr("is 20 ms. No option is fast enough and keeps the stimulus of "
                               "one-plume: close other programs"),
                     Not(HasSubstr("--grid"))));
 }
@@ -184,7 +185,7 @@ TEST(Verdict, OneStepInAHundredMayBeMissing) {
   EXPECT_THAT(with_skipped(32).sentences.front(), HasSubstr("another program takes the processor"));
 }
 
-TEST(Verdict, ASlowPlannerIsNamed) {
+TEST(Verdict, ASlowPlannerIsReported) {
   const auto slow = [](RunSummary& s) {
     s.plans = 700;
     s.skipped_updates = 500;
@@ -193,7 +194,7 @@ TEST(Verdict, ASlowPlannerIsNamed) {
   EXPECT_EQ(judged(slow).held, false);
   EXPECT_THAT(said(slow).front(),
               AllOf(HasSubstr("plans 16.7 of 25 Hz"), HasSubstr("A plan takes 58.0 ms (median)"),
-                    HasSubstr("has 40 ms. Use --preset fast")));
+                    HasSubstr("is 40 ms. Use --preset fast")));
   PipelineSettings fast;
   fast.plan.preset = Preset::Fast;
   RunSummary s = good();
@@ -201,10 +202,10 @@ TEST(Verdict, ASlowPlannerIsNamed) {
   EXPECT_THAT(verdict_of(s, fast).sentences.front(), HasSubstr("Use fewer --paths."));
 }
 
-TEST(Verdict, MissedBlocksAreToldAsWhatIsFelt) {
+TEST(Verdict, MissedBlocksAreReportedByTheirEffect) {
   const Verdict few = judged([](RunSummary& s) { s.device.missed_blocks = 3; });
   EXPECT_EQ(few.held, true);
-  EXPECT_THAT(few.sentences.front(), HasSubstr("(3 of 60000 blocks missed, hardly to be felt)"));
+  EXPECT_THAT(few.sentences.front(), HasSubstr("(3 of 60000 blocks missed, hardly noticeable)"));
   const Verdict many = judged([](RunSummary& s) { s.device.missed_blocks = 475; });
   EXPECT_EQ(many.held, false);
   EXPECT_THAT(
@@ -221,11 +222,11 @@ TEST(Verdict, MissedBlocksAreToldAsWhatIsFelt) {
                           StartsWith("The array was silent for 475 ms in all")));
 }
 
-TEST(Verdict, LateBlocksThatTheQueueCoveredAreNotUnusual) {
+TEST(Verdict, LateBlocksThatTheQueueAbsorbedAreNormal) {
   EXPECT_EQ(said([](RunSummary& s) { s.device.late_blocks = 214; }), said([](RunSummary&) {}));
 }
 
-TEST(Verdict, WithoutAClockThePaceIsTold) {
+TEST(Verdict, WithoutAClockThePaceIsReported) {
   const auto fast = judged([](RunSummary& s) {
     s.mode = RunMode::AsFastAsPossible;
     s.took = 12.0;
@@ -245,14 +246,14 @@ TEST(Verdict, WithoutAClockThePaceIsTold) {
               HasSubstr("computed in 60.0 s, as fast as real time; "));
 }
 
-TEST(Verdict, ARunWithoutAStepSaysSo) {
+TEST(Verdict, ARunWithoutAStepIsReported) {
   EXPECT_THAT(verdict_of({}, {}).sentences, ElementsAre("The run ended before its first step."));
 }
 
-TEST(Verdict, WhatIsUnusualIsToldWithItsRemedy) {
+TEST(Verdict, UnusualEventsAreReportedWithTheirRemedy) {
   const std::pair<std::function<void(RunSummary&)>, const char*> cases[] = {
       {[](RunSummary& s) { s.emit.saturated = 4'800'000; },
-       "50 % of the samples were at full scale, 0.224 Pa: stronger pressure feels no stronger. "
+       "50 % of the samples were at full scale, 0.224 Pa, where stronger pressure feels the same. "
        "Raise full_scale_pressure in [emit] (--settings)."},
       {[](RunSummary& s) { s.emit.limited = 1'920'000; },
        "20 % of the samples were weakened by the power limit: raise power_limit in [emit] "
@@ -267,9 +268,9 @@ TEST(Verdict, WhatIsUnusualIsToldWithItsRemedy) {
        "12 updates are missing in the recording or for the picture: writing was too slow. Record "
        "to a faster disk."},
       {[](RunSummary& s) { s.world_resets = 2; },
-       "The smoke went wrong 2 times and began anew at rest: what was felt then means nothing."},
+       "The smoke simulation failed 2 times and restarted at rest: ignore what was felt then."},
       {[](RunSummary& s) { s.limited_samples = 7; },
-       "7 samples were outside the device's limits and were cut down: a stage before it is at "
+       "7 samples were outside the device's limits and were clamped: an earlier stage is at "
        "fault."},
       {[](RunSummary& s) {
          s.safety.acoustic_pressure = 4;
@@ -286,8 +287,8 @@ TEST(Verdict, WhatIsUnusualIsToldWithItsRemedy) {
   }
 }
 
-// a small box that follows a finger cannot hold the whole hand
-TEST(Verdict, AHandMayReachOutOfABoxThatFollowsIt) {
+// a small box that follows a finger cannot contain the whole hand
+TEST(Verdict, AHandMayReachBeyondABoxThatFollowsIt) {
   RunSummary s = good();
   s.contact_stats.joints_outside = 19'500;
   PipelineSettings settings;
@@ -296,7 +297,7 @@ TEST(Verdict, AHandMayReachOutOfABoxThatFollowsIt) {
               ElementsAre(StartsWith("The rates were held: "), "Nothing was unusual."));
 }
 
-TEST(Verdict, ARunWithoutContactSaysWhy) {
+TEST(Verdict, ARunWithoutContactIsExplained) {
   const auto nothing_felt = [](auto change) {
     return said([&](RunSummary& s) {
       s.plans = 0;
@@ -318,7 +319,7 @@ TEST(Verdict, ARunWithoutContactSaysWhy) {
               "No pressure reached the hand, so nothing was felt.");
 }
 
-TEST(Verdict, ATrackerIsJudged) {
+TEST(Verdict, ATrackerIsEvaluated) {
   const auto of = [](const std::function<void(TrackerStatus&)>& change) {
     TrackerStatus tracker;
     tracker.connected = true;
@@ -331,11 +332,11 @@ TEST(Verdict, ATrackerIsJudged) {
   EXPECT_THAT(of([](TrackerStatus& t) { t.reconnects = 2; }).back(),
               StartsWith("The tracker was lost 2 times and came back"));
   EXPECT_THAT(of([](TrackerStatus& t) { t.dropped = 300; }).back(),
-              "5 % of the tracker's 6000 frames were not taken: connected to "
+              "5 % of the tracker's 6000 frames were discarded: connected to "
               "leap://127.0.0.1:6437.");
   EXPECT_THAT(of([](TrackerStatus& t) { t.connected = false; }).back(),
-              StartsWith("The tracker was lost and not there at the end: "));
-  // of what follows from that nothing more is told
+              StartsWith("The tracker was lost and had not come back at the end: "));
+  // consequences of that are not reported
   RunSummary s = good();
   s.plans = 0;
   s.contact_stats = {};
@@ -343,10 +344,10 @@ TEST(Verdict, ATrackerIsJudged) {
   absent.sentence = "nothing answers";
   EXPECT_THAT(verdict_of(s, {}, absent).sentences,
               ElementsAre(StartsWith("The rates were held"),
-                          "No frame of a hand ever came: nothing answers."));
+                          "No hand frame ever arrived: nothing answers."));
 }
 
-TEST(Verdict, HasFourSentencesAtMostTheMostImportantFirst) {
+TEST(Verdict, HasAtMostFourSentencesTheMostImportantFirst) {
   const auto all = said([](RunSummary& s) {
     s.device.missed_blocks = 475;
     s.world_steps = 2000;
@@ -356,12 +357,13 @@ TEST(Verdict, HasFourSentencesAtMostTheMostImportantFirst) {
     s.contact_stats.joints_outside = s.contact_stats.joints / 2;
     s.world_resets = 1;
   });
-  EXPECT_THAT(all,
-              ElementsAre(StartsWith("The rates were not held"), StartsWith("The array was silent"),
-                          StartsWith("The smoke went wrong"), HasSubstr("of the hand's joints")));
+  EXPECT_THAT(
+      all,
+      ElementsAre(StartsWith("The rates were not held"), StartsWith("The array was silent"),
+                  StartsWith("The smoke simulation failed"), HasSubstr("of the hand's joints")));
 }
 
-TEST(Verdict, AHandThatIsComingInIsNoWarning) {
+TEST(Verdict, AHandThatIsEnteringIsNoWarning) {
   const auto outside_for = [](double seconds) {
     return said([seconds](RunSummary& s) {
       s.seconds = seconds;

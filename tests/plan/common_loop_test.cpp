@@ -12,14 +12,14 @@ namespace {
 
 constexpr double kLongest = 20e-3;
 
-TEST(CommonLoop, IsThatOfTheLongestPathWhereAllAreAsLong) {
+TEST(CommonLoop, IsThatOfTheLongestPathIfAllAreEqual) {
   const std::vector<double> own(4, kLongest);
   const CommonLoop loop = choose_loop(own, kLongest, 0.0);
   EXPECT_DOUBLE_EQ(loop.period, kLongest);
   for (std::size_t k = 0; k < own.size(); ++k) EXPECT_EQ(loop.laps[k], 1);
 }
 
-TEST(CommonLoop, LetsShortPathsGoRoundMoreOften) {
+TEST(CommonLoop, LetsShortPathsMakeMoreLaps) {
   const std::vector<double> own = {kLongest, kLongest / 2, kLongest / 4};
   const CommonLoop loop = choose_loop(own, kLongest, 0.0);
   EXPECT_DOUBLE_EQ(loop.period, kLongest);
@@ -28,17 +28,17 @@ TEST(CommonLoop, LetsShortPathsGoRoundMoreOften) {
   EXPECT_NEAR(loop.pace, 1.0, 1e-12);
 }
 
-TEST(CommonLoop, KnowsHowMuchItSlowsPathsDown) {
+TEST(CommonLoop, ReportsHowMuchItSlowsPathsDown) {
   const std::vector<double> own = {kLongest, 0.9 * kLongest, 0.4 * kLongest};
   const CommonLoop loop = loop_of(own, kLongest);
   EXPECT_NEAR(loop.pace, (1.0 + 0.9 + 2 * 0.4) / 3, 1e-12);
 }
 
-TEST(CommonLoop, IsShorterWherePathsAre) {
+TEST(CommonLoop, IsShorterIfAllPathsAre) {
   const std::vector<double> own(3, 0.6 * kLongest);
   const CommonLoop loop = choose_loop(own, kLongest, 0.0);
   EXPECT_DOUBLE_EQ(loop.period, 0.6 * kLongest);
-  // the last plan's is kept while that costs little
+  // the last plan's loop is kept while that costs little
   const CommonLoop kept = choose_loop(own, kLongest, 0.62 * kLongest);
   EXPECT_DOUBLE_EQ(kept.period, 0.62 * kLongest);
   EXPECT_DOUBLE_EQ(choose_loop(own, kLongest, kLongest).period, 0.6 * kLongest);

@@ -16,7 +16,7 @@ using namespace planning;
 
 constexpr int kSamples = 20, kPaths = 4;
 
-/// Returns four rough loops over the raster of the generated fields, or points anywhere on it [mm].
+/// Returns four irregular loops on the raster of the generated fields, or random points on it [mm].
 std::vector<Vec2> random_paths(Random& random, bool loops) {
   std::vector<Vec2> x;
   for (int k = 0; k < kPaths; ++k) {
@@ -31,7 +31,7 @@ std::vector<Vec2> random_paths(Random& random, bool loops) {
   return x;
 }
 
-/// A cost of the samples, which adds its gradient.
+/// A cost of the samples, which also adds its gradient.
 using Cost = std::function<double(std::span<const Vec2>, std::span<Vec2>)>;
 
 struct NamedCost {
@@ -105,7 +105,7 @@ TEST(Costs, GradientsAgreeWithCentralDifferences) {
   }
 }
 
-TEST(Costs, TurningPathsAndFieldTogetherChangesNothing) {
+TEST(Costs, RotatingPathsAndFieldTogetherChangesNothing) {
   Random random(12);
   Refiner refiner(CostSettings(PlanSettings{}), kPaths, kSamples, 0);
   Refiner turned_refiner(CostSettings(PlanSettings{}), kPaths, kSamples, 0);
@@ -147,7 +147,7 @@ TEST(Costs, ClosedFormsOnARegularPolygon) {
   EXPECT_NEAR(bending_cost({x, kSamples}, 1.0, gradient),
               kSamples * std::pow(2 * kPi / kSamples, 2), 1e-9);
 
-  // every pair except consecutive ones, each once
+  // every pair except consecutive samples, each once
   std::vector<SamplePair> pairs;
   near_pairs({x, kSamples}, 1e3, pairs);
   EXPECT_EQ(pairs.size(), static_cast<std::size_t>(kSamples * (kSamples - 1) / 2 - kSamples));
@@ -178,7 +178,7 @@ TEST(PressureRaster, ReproducesCellsAndQuadraticsAndIsZeroFarAway) {
   TargetField field;
   field.resize(12, 9);
   field.cell = 4e-3;
-  // with numbers that 24 bits hold exactly
+  // with numbers that are exact in 24 bits
   const auto quadratic = [](double u, double v) {
     return 1.0 + 0.25 * u + 0.125 * u * u + 0.1875 * v + 0.0625 * u * v;
   };
@@ -202,7 +202,7 @@ TEST(PressureRaster, ReproducesCellsAndQuadraticsAndIsZeroFarAway) {
   }
 }
 
-TEST(Refiner, NeverRaisesTheCostAndNearPairsLoseNothing) {
+TEST(Refiner, NeverRaisesTheCostAndMissesNoNearPair) {
   Random random(13);
   Refiner refiner(CostSettings(PlanSettings{}), kPaths, kSamples, 60);
   PressureRaster raster(fields::kCells * fields::kCells);
@@ -215,7 +215,7 @@ TEST(Refiner, NeverRaisesTheCostAndNearPairsLoseNothing) {
     const RefineResult result = refiner.run(raster, x);
     EXPECT_LT(result.cost, before);
 
-    // the same cost from all pairs, not only from the list carried along
+    // the same cost from all pairs, not only from the maintained list
     Refiner fresh(CostSettings(PlanSettings{}), kPaths, kSamples, 0);
     EXPECT_EQ(result.cost, fresh.evaluate(raster, x, gradient));
   }

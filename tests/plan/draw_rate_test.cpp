@@ -25,13 +25,13 @@ PlanSettings settings_at(const std::string& preset, double speed, double draw_ra
   return settings;
 }
 
-TEST(DrawRate, TheDefaultsAreThePapersLengthToTheBit) {
+TEST(DrawRate, TheDefaultsGiveThePapersLengthExactly) {
   EXPECT_EQ(PlanSettings{}.max_length(), 0.140);
   EXPECT_DOUBLE_EQ(settings_at("best", 3.5, 25.0).max_length(), 0.140);
   EXPECT_DOUBLE_EQ(settings_at("best", 5.0, 25.0).max_length(), 0.2);
 }
 
-TEST(DrawRate, NoPathIsDrawnMoreSeldom) {
+TEST(DrawRate, NoPathIsDrawnLessOften) {
   for (const char* preset : {"paper-valid", "best", "fast"}) {
     for (const double rate : {20.0, 35.0, 50.0, 90.0, 150.0, 400.0, 700.0}) {
       const PlanSettings settings = settings_at(preset, 7.0, rate);
@@ -50,7 +50,7 @@ TEST(DrawRate, NoPathIsDrawnMoreSeldom) {
   }
 }
 
-/// Begins each path at the point where that of `like` begins; the starts depend on the periods.
+/// Starts each path at the first point of the path in `like`; the starts depend on the periods.
 Plan begun_like(Plan plan, const Plan& like) {
   for (std::size_t k = 0; k < plan.paths.size() && k < like.paths.size(); ++k) {
     FocalPath& path = plan.paths[k];
@@ -68,7 +68,7 @@ Plan begun_like(Plan plan, const Plan& like) {
 TEST(DrawRate, PathsDependOnTheLengthsAlone) {
   for (const char* preset : {"paper", "paper-valid", "best", "fast"}) {
     const TargetField field = fields::make(Pattern::FourPlumes, 2);
-    // the lengths of a path and of an intensity's rise are the same in both plans
+    // a path's length and the length of an intensity's rise are the same in both plans
     PlanSettings settings = settings_at(preset, 1.75, 12.5);
     settings.rise_time = 4e-3;
     const Plan slow = test::plan_of(settings, field);
@@ -82,7 +82,7 @@ TEST(DrawRate, PathsDependOnTheLengthsAlone) {
   }
 }
 
-TEST(DrawRate, ThePapersPathsAreAsLongAsItSays) {
+TEST(DrawRate, ThePapersPathsHaveItsStatedLength) {
   for (const double rate : {40.0, 50.0, 80.0}) {
     const TargetField field = fields::make(Pattern::OnePlume, 0);
     for (const FocalPath& path : test::plan_of(settings_at("paper", 7.0, rate), field).paths) {
@@ -91,7 +91,7 @@ TEST(DrawRate, ThePapersPathsAreAsLongAsItSays) {
   }
 }
 
-TEST(DrawRate, TheLeastLengthGivesWay) {
+TEST(DrawRate, MinimumLengthYieldsToDrawRate) {
   // a contact that would get a loop of 35 mm, at rates that do not allow it
   TargetField field;
   field.resize(30, 30);
@@ -106,7 +106,7 @@ TEST(DrawRate, TheLeastLengthGivesWay) {
   }
 }
 
-TEST(DrawRate, OutOfBoundsIsToldInOneSentence) {
+TEST(DrawRate, BoundsAreReportedInOneSentence) {
   const auto message = [](double speed, double rate) -> std::string {
     try {
       Planner planner(settings_at("best", speed, rate), kCells);

@@ -41,7 +41,7 @@ TEST(FeltPlan, HasTheGradientOfItsLack) {
     };
     for (const std::size_t k : {0, 1}) {
       for (const std::size_t i : {0, 41}) {
-        // in the units of the planner: shares of the maximum, and mm
+        // in the planner's units: fractions of the maximum, and mm
         const double by_pressure = difference(plan.paths[k].pressure[i], 1e-5 * largest);
         EXPECT_NEAR(at.by_pressure[k][i] * largest, by_pressure * largest, 1e-6);
         for (const int axis : {0, 1}) {
@@ -53,7 +53,7 @@ TEST(FeltPlan, HasTheGradientOfItsLack) {
   }
 }
 
-TEST(FeltPlan, LacksLessByPressuresAndLeastByPoints) {
+TEST(FeltPlan, PressuresReduceTheLackAndPointsReduceItMore) {
   double plain = 0.0, by_pressures = 0.0, by_points = 0.0;
   for (const fields::Pattern pattern : {fields::Pattern::FourPlumes, fields::Pattern::Ring,
                                         fields::Pattern::Letter, fields::Pattern::Palm}) {
@@ -73,7 +73,7 @@ TEST(FeltPlan, LacksLessByPressuresAndLeastByPoints) {
   EXPECT_LT(by_points, 0.9 * by_pressures);
 }
 
-TEST(FeltPlan, RefusesWithASentence) {
+TEST(FeltPlan, RejectsInvalidSettingsWithASentence) {
   const TargetField field = fields::make(fields::Pattern::Ring, 10);
   const Plan plan = test::plan_of(felt(false), field);
   const auto message = [](const Plan& p, const TargetField& f, double sigma) -> std::string {
@@ -97,7 +97,7 @@ TEST(FeltPlan, RefusesWithASentence) {
   EXPECT_THAT(message(plan, field, 0.2), testing::HasSubstr("sigma"));
 }
 
-/// Checks that a plan in step may be played.
+/// Checks that a plan in step is playable.
 void expect_in_step(const Plan& plan, const PlanSettings& settings, const std::string& where) {
   SCOPED_TRACE(where);
   ASSERT_NO_FATAL_FAILURE(
@@ -111,7 +111,7 @@ void expect_in_step(const Plan& plan, const PlanSettings& settings, const std::s
   }
 }
 
-TEST(FeltPlan, IsValidOnAnyTarget) {
+TEST(FeltPlan, IsValidForAnyTarget) {
   for (const bool points : {false, true}) {
     Random random(11);
     const PlanSettings settings = felt(points);
@@ -132,7 +132,7 @@ TEST(FeltPlan, IsValidOnAnyTarget) {
   }
 }
 
-TEST(FeltPlan, IsTheSameForTheSameSeedAndInAnyUnit) {
+TEST(FeltPlan, DependsOnlyOnTheSeedAndNotOnTheUnit) {
   const TargetField field = fields::make(fields::Pattern::Letter, 20);
   const Plan plan = test::plan_of(felt(true), field), again = test::plan_of(felt(true), field);
   TargetField scaled = field;
@@ -148,7 +148,7 @@ TEST(FeltPlan, IsTheSameForTheSameSeedAndInAnyUnit) {
   }
 }
 
-TEST(FeltPlan, AllocatesNothing) {
+TEST(FeltPlan, DoesNotAllocate) {
   for (const bool points : {false, true}) {
     Planner planner(felt(points), fields::kCells * fields::kCells);
     const TargetField one = fields::make(fields::Pattern::OnePlume, 1);
@@ -162,7 +162,7 @@ TEST(FeltPlan, AllocatesNothing) {
   }
 }
 
-TEST(PlanSettings, FeelOnlyWhatIsFitted) {
+TEST(PlanSettings, FeltWeightNeedsAFittedPreset) {
   PlanSettings settings = felt(false);
   settings.preset = Preset::PaperValid;
   EXPECT_THROW(validate(settings), std::invalid_argument);

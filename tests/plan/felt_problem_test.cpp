@@ -16,8 +16,8 @@ using namespace planning;
 
 constexpr std::size_t kPoints = 28, kPaths = 3;
 
-/// Uneven loops in a field of 162 mm, near each other at some moments, and their √p: all in one
-/// row.
+/// Irregular loops in a field of 162 mm, close to each other at some times, and their √p: all in
+/// one array.
 std::vector<float> uneven_loops(Random& random) {
   std::vector<float> out(3 * kPaths * kPoints);
   for (std::size_t k = 0; k < kPaths; ++k) {
@@ -34,14 +34,14 @@ std::vector<float> uneven_loops(Random& random) {
   return out;
 }
 
-/// Variables that change together, and how far to each side.
+/// Variables that change together, and the step in either direction.
 struct Change {
   std::size_t first, count;
   float step;
 };
 
-/// Compares slopes in random directions with differences. @param cost of variables; writes its
-/// gradient. @param share by which they may differ.
+/// Compares slopes in random directions with finite differences. @param cost of variables; writes
+/// its gradient. @param share relative tolerance.
 template <class Cost>
 void expect_gradient(const Cost& cost, const std::vector<float>& at, const Change& change,
                      double share) {
@@ -70,7 +70,7 @@ void expect_gradient(const Cost& cost, const std::vector<float>& at, const Chang
 }
 
 TEST(FeltProblem, HasTheGradientOfItsCost) {
-  // (P10) jumps where another path becomes the nearest, so points are compared without it
+  // (P10) jumps when another path becomes the nearest, so points are compared without it
   for (const double weight : {0.9, 1.0}) {
     PlanSettings settings;
     settings.paths = static_cast<int>(kPaths);
@@ -96,15 +96,15 @@ TEST(FeltProblem, HasTheGradientOfItsCost) {
     EXPECT_GT(near, 0.01F);
     problem.keep_loudness(std::span(at).first(n));
     expect_gradient(cost, at, {0, n, 5e-3F}, 0.005);
-    // pairs are rounded, so a step must not be small, and not so long that it bends
+    // pairs are rounded, so the step must be large enough, but small enough for curvature
     if (weight == 1.0) expect_gradient(cost, at, {n, 2 * n, 4e-2F}, 0.02);
   }
 }
 
-TEST(RiseCost, HasTheGradientOfItself) {
+TEST(RiseCost, HasTheGradientOfItsValues) {
   Random random(5);
   std::vector<float> at = uneven_loops(random);
-  for (std::size_t j = 0; j < at.size() / 3; j += 5) at[j] = -at[j];  // as good a root
+  for (std::size_t j = 0; j < at.size() / 3; j += 5) at[j] = -at[j];  // an equally valid root
   constexpr std::size_t n = kPaths * kPoints;
   const PlayBounds bounds = PlayBounds::all(0.5F, 0.08F);
   for (const int pieces : {1, 2}) {
@@ -119,7 +119,7 @@ TEST(RiseCost, HasTheGradientOfItself) {
   }
 }
 
-/// A circle whose √p is `low` but at one point, where it is 1.
+/// A circle whose √p is `low` except at one point, where it is 1.
 struct Peak {
   static constexpr std::size_t kAt = 5;
   std::vector<float> x, y, root, gradient;
@@ -133,7 +133,7 @@ struct Peak {
     }
   }
   StepPoints points() const { return {static_cast<int>(kPoints), x, y}; }
-  /// Whether make_playable() leaves the pressures as they are, linear in `pieces` between points.
+  /// Whether make_playable() leaves the pressures unchanged, linear in `pieces` between points.
   bool can_be_played(const PlayBounds& bounds, int pieces) const {
     Loops loops;
     loops.reset(static_cast<int>(kPoints) * pieces, 1);
@@ -155,7 +155,7 @@ struct Peak {
   }
 };
 
-TEST(RiseCost, BeginsWherePressuresCanNoLongerBePlayed) {
+TEST(RiseCost, StartsWherePressuresAreNoLongerPlayable) {
   const PlayBounds bounds = PlayBounds::all(1.0F, 0.1F);
   for (const int pieces : {1, 2}) {
     int playable = 0, free = 0;

@@ -23,7 +23,7 @@ using fields::Pattern;
 
 constexpr std::size_t kCells = static_cast<std::size_t>(fields::kCells) * fields::kCells;
 
-/// Loops over a pattern, and the cells to render.
+/// Loops on a pattern, and the cells to render.
 struct Case {
   CellTiles cells{kCells};
   Loops loops;
@@ -40,7 +40,7 @@ struct Case {
   }
 };
 
-TEST(CellTiles, KeepTheMassTheAreaAndTheSkinOfTheTarget) {
+TEST(CellTiles, PreserveTheMassTheAreaAndTheSkinOfTheTarget) {
   for (const Pattern pattern : fields::kPatterns) {
     const TargetField field = fields::make(pattern, 2);
     const double maximum = max_pressure(field);
@@ -67,8 +67,8 @@ TEST(CellTiles, KeepTheMassTheAreaAndTheSkinOfTheTarget) {
   }
 }
 
-/// Differences of two kernels' choices of the closest segment of a cell: either of two equally near
-/// ones is correct. At a shared end both give the same pressures, though the gradient has a kink.
+/// Differences between two kernels' choices of the closest segment of a cell: of two equally close
+/// ones either is correct. At a shared end both give equal pressures, but the gradient has a kink.
 enum class Ties { None, AtSharedEnds, Between };
 
 Ties ties_of(const Case& c, const ReconstructionScratch& a, const ReconstructionScratch& b) {
@@ -112,8 +112,8 @@ double largest_difference(const Case& c, const ReconstructionScratch& one_scratc
   return static_cast<double>(largest);
 }
 
-/// Returns the steepest possible gradient at a node, if rendered and target pressures added up
-/// instead of cancelling: the scale of its rounding.
+/// Returns the largest possible gradient at a node, if rendered and target pressures added
+/// instead of cancelling: the scale of its rounding errors.
 double largest_gradient(const Case& c, const ReconstructionScratch& scratch,
                         const Reconstruction& at) {
   const float sigma = ReconstructionSettings{}.sigma, falloff = 1.0F / (sigma * sigma);
@@ -149,7 +149,7 @@ TEST(Reconstruction, VectorKernelAgreesWithThePlainOne) {
     compared += ties != Ties::Between ? 1 : 0;
     compared_gradients += ties == Ties::None ? 1 : 0;
     if (ties == Ties::Between) continue;
-    // compares rendered pressures; the cells may hardly determine single pressures of the path
+    // compares rendered pressures; the cells may hardly determine individual pressures of the path
     EXPECT_LT(largest_difference(c, plain_scratch, plain, scratch, vector), 1e-5) << seed;
     double difference = 0.0;
     for (int k = 0; k < c.loops.paths; ++k) {
@@ -184,7 +184,7 @@ TEST(Descent, GradientAgreesWithCentralDifferences) {
 
 TEST(Descent, NeverRaisesTheCostAndKeepsToItsEvaluations) {
   constexpr std::uint64_t kSeeds = 40;
-  float left = 0.0F;  // mean share of the cost that remains
+  float left = 0.0F;  // mean fraction of the cost that remains
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const Case c(fields::kPatterns[seed % fields::kPatterns.size()], static_cast<int>(seed),
                  1 + static_cast<int>(seed % 8), 20, seed);
@@ -196,7 +196,7 @@ TEST(Descent, NeverRaisesTheCostAndKeepsToItsEvaluations) {
     float before = start;
     for (const int evaluations : {1, 2, 7, 30}) {
       EXPECT_LE(descent.run(c.cells, fit, evaluations), evaluations);
-      // pairs that were not listed before may increase the cost
+      // pairs that were not listed before may raise the cost
       EXPECT_LE(fit.cost, before * 1.001F + 1e-3F);
       before = fit.cost;
     }
@@ -215,8 +215,8 @@ TEST(Descent, EndsAtItsDeadline) {
   EXPECT_GT(descent.run(c.cells, fit, 30, {&timer, 1e9}), 1);
 }
 
-TEST(Reconstruction, SolvedPressuresAreTheLeastSquaresOnes) {
-  // moving any pressure in either direction, within its bounds, does not lower the error
+TEST(Reconstruction, SolvedPressuresAreTheLeastSquaresSolution) {
+  // changing any pressure in either direction, within its bounds, does not lower the error
   const Case c(Pattern::FourPlumes, 3, 4, 20, 5);
   ReconstructionSettings settings;
   settings.weight_coverage = 0.0F;
@@ -268,7 +268,7 @@ SpacingRule stated_rule() {
   return rule;
 }
 
-/// Returns the samples of a path in a plan: for `best` those of its search, and one between each
+/// Returns the samples of a path in a plan: for `best` those of its search, plus one between any
 /// two.
 int samples_of(const PlanSettings& settings) {
   return settings.preset == Preset::Best ? 2 * settings.fit_samples : settings.samples;
@@ -298,7 +298,7 @@ TEST(FitPresets, RandomFieldsGiveValidPlansThatKeepTheirSpacing) {
     Plan plan;
     PlanStats stats;
     Planner& planner = seed % 4 == 0 ? best : fast;
-    // half of them continue from a plan of another target
+    // half of them continue from a plan for another target
     if (seed % 8 < 4) planner.reset();
     const test::HeapGuard guard;
     const PlanStatus status = planner.plan(input.field, plan, stats);
@@ -395,7 +395,7 @@ TargetField spreading_contact(double radius) {
   return field;
 }
 
-TEST(FitPresets, NoPathsAreLeftBehind) {
+TEST(FitPresets, NoPathsStayBehind) {
   for (const char* name : {"fast", "best"}) {
     Planner warm(preset(name), kCells), cold(preset(name), kCells);
     double left = 0.0, anew = 0.0;
@@ -413,7 +413,7 @@ TEST(FitPresets, NoPathsAreLeftBehind) {
   }
 }
 
-TEST(FitPresets, FramesContinueFromThePathsBefore) {
+TEST(FitPresets, FramesContinueFromThePreviousPaths) {
   Planner planner(preset("best"), kCells);
   TargetFrame frame;
   frame.patches.push_back(fields::make(Pattern::OnePlume, 4));
@@ -421,12 +421,12 @@ TEST(FitPresets, FramesContinueFromThePathsBefore) {
   PlanStats stats;
   planner.plan(frame, first, stats);
   planner.plan(frame, second, stats);
-  // for the same target again the paths stay in place, or get better
+  // for the same target again, the paths stay in place or improve
   const Metrics a = score_plan(frame.patches[0], first, 0, 8.6e-3, {1.4});
   const Metrics b = score_plan(frame.patches[0], second, 0, 8.6e-3, {1.4});
   EXPECT_LT(b.rmse, 1.03 * a.rmse);
 
-  // after a reset it plans as if new
+  // after a reset it plans as if for the first time
   planner.reset();
   Plan again;
   planner.plan(frame, again, stats);
@@ -441,7 +441,7 @@ double signed_area(const FocalPath& path) {
   return area;
 }
 
-/// Returns the mean of d^−8 over the pairs of focal points and 40 ms, as a distance [m].
+/// Returns the mean of d^−8 over the pairs of focal points and 40 ms, expressed as a distance [m].
 /// @param later the start of each path, in samples after its first point.
 double mean_distance(const Plan& plan, const std::array<int, kMaxPaths>& later) {
   LiftedPlan lifted;
@@ -468,7 +468,7 @@ double mean_distance(const Plan& plan, const std::array<int, kMaxPaths>& later) 
   return std::pow(sum / terms, -1.0 / 8.0);
 }
 
-TEST(FitPresets, FocalPointsRunTheSameWayRoundAndStartApart) {
+TEST(FitPresets, FocalPointsRunInOneDirectionAndStartApart) {
   Random random(1);
   for (const char* name : {"best", "fast"}) {
     Planner planner(preset(name), kCells);
@@ -500,7 +500,7 @@ TEST(FitPresets, FocalPointsRunTheSameWayRoundAndStartApart) {
   }
 }
 
-/// Returns the same field on a raster with `more` columns without skin to the left.
+/// Returns the same field on a raster with `more` additional columns without skin on the left.
 TargetField widened(const TargetField& field, int more) {
   TargetField out;
   out.resize(field.rows, field.cols + more);
@@ -517,7 +517,7 @@ TargetField widened(const TargetField& field, int more) {
   return out;
 }
 
-TEST(FitPresets, PathsThatGoOnKeepTheirFirstPoints) {
+TEST(FitPresets, ContinuingPathsKeepTheirFirstPoints) {
   Planner planner(preset("fast"), 2 * kCells);
   Plan before;
   int kept = 0, all = 0;
@@ -542,7 +542,7 @@ TEST(FitPresets, PathsThatGoOnKeepTheirFirstPoints) {
   EXPECT_GE(kept, all * 9 / 10) << kept << " of " << all;
 }
 
-TEST(Spacing, PushesApartWhatIsTooNear) {
+TEST(Spacing, PushesClosePathsApart) {
   // two circles that overlap by half
   SpacingRule rule = stated_rule();
   rule.most_length.fill(140.0);

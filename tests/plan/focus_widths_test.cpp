@@ -37,7 +37,7 @@ FocusWidths constant(double sigma) {
   return {{0.1, 0.3}, {0.0}, {0.0}, {sigma, sigma}};
 }
 
-TEST(FocusWidths, AreLinearBetweenPlacesAndConstantBeyondThem) {
+TEST(FocusWidths, AreLinearBetweenEntriesAndConstantBeyondThem) {
   const FocusWidths widths = table();
   validate(widths);
   Random random(1);
@@ -49,7 +49,7 @@ TEST(FocusWidths, AreLinearBetweenPlacesAndConstantBeyondThem) {
   }
 }
 
-TEST(FocusWidths, OfATargetAreThoseWhereItsPressureIs) {
+TEST(FocusWidths, OfATargetAreThoseAtItsPressure) {
   TargetField field = fields::make(fields::Pattern::Fingertips, 0, 40);
   Vec2 middle = Vec2::Zero();
   double sum = 0.0;
@@ -64,7 +64,7 @@ TEST(FocusWidths, OfATargetAreThoseWhereItsPressureIs) {
   }
   field.X_DP = Eigen::Translation3d(0.0, 0.0, 0.15) * Eigen::AngleAxisd(0.3, Vec3::UnitY());
   const Vec3 p = field.X_DP * Vec3(middle.x() / sum, middle.y() / sum, 0.01);
-  const double offset = std::min(p.head<2>().norm(), 0.05);  // the end of the table
+  const double offset = std::min(p.head<2>().norm(), 0.05);  // the table ends there
   EXPECT_NEAR(table().on(field), linear(p.z(), offset, 0.3), 1e-9);
   std::fill(field.pressure.begin(), field.pressure.end(), 0.0);
   EXPECT_NEAR(table().on(field), linear(0.15, 0.0, 0.3), 1e-9);
@@ -94,7 +94,7 @@ TEST(FocusWidths, GiveThePlansOfTheirSigma) {
   }
 }
 
-TEST(FocusWidths, AllocateNothingAndKeepPlansValidWhileTheHandRises) {
+TEST(FocusWidths, DoNotAllocateAndKeepPlansValidWhileTheHandRises) {
   PlanSettings settings;
   settings.preset = Preset::Fast;
   settings.widths = table();
@@ -111,7 +111,7 @@ TEST(FocusWidths, AllocateNothingAndKeepPlansValidWhileTheHandRises) {
   EXPECT_EQ(guard.allocations(), 0U);
 }
 
-TEST(FocusWidths, RefuseWhatIsNoTable) {
+TEST(FocusWidths, RejectInvalidTables) {
   validate(FocusWidths());
   FocusWidths widths = table();
   widths.sigma.pop_back();

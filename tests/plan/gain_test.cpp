@@ -26,7 +26,7 @@ PlanSettings settings_with(const std::string& preset, double exponent) {
   PlanSettings settings;
   settings.preset = from_name<Preset>(preset, "preset");
   settings.gain_exponent = exponent;
-  settings.full_scale_pressure = 1e5;  // so high that it limits nothing
+  settings.full_scale_pressure = 1e5;  // so high that it has no effect
   return settings;
 }
 
@@ -41,7 +41,7 @@ void expect_near(const Metrics& a, const Metrics& b) {
   EXPECT_NEAR(a.spill, b.spill, kTolerance);
 }
 
-/// Checks each path's pressures against those with exponent 0.
+/// Compares each path's pressures with those for exponent 0.
 void expect_scaled(const Plan& plain, const Plan& scaled, double exponent) {
   ASSERT_EQ(plain.paths.size(), scaled.paths.size());
   for (std::size_t k = 0; k < plain.paths.size(); ++k) {
@@ -55,12 +55,12 @@ void expect_scaled(const Plan& plain, const Plan& scaled, double exponent) {
   }
 }
 
-TEST(GainLaw, IsThePowerLawThatItStates) {
+TEST(GainLaw, IsTheStatedPowerLaw) {
   EXPECT_EQ(GainLaw{}.of(0.0), 1.4);
   EXPECT_EQ(GainLaw{}.of(0.0123), 1.4);
   EXPECT_DOUBLE_EQ((GainLaw{1.4, 1.0, 50.0}.of(0.01)), 0.7);
   EXPECT_DOUBLE_EQ((GainLaw{2.0, -0.5, 25.0}.of(0.01)), 4.0);
-  // the longest path has γ of the settings, for any exponent
+  // the longest path has the γ of the settings, for any exponent
   for (const double exponent : {-2.0, -0.3, 0.7, 2.0}) {
     EXPECT_DOUBLE_EQ((GainLaw{1.4, exponent, 50.0}.of(0.02)), 1.4);
   }
@@ -70,19 +70,19 @@ TEST(GainLaw, IsThePowerLawThatItStates) {
   EXPECT_DOUBLE_EQ((GainLaw{1.0, -2.0, 50.0}.of(0.0)), 256.0);
 }
 
-TEST(GainLaw, FromTheSkinIsItsTable) {
+TEST(GainLaw, FromTheSkinFollowsItsTable) {
   const GainLaw law{1.4, 0.0, 50.0, true};
   EXPECT_DOUBLE_EQ(law.of(0.02), 1.4);
   EXPECT_DOUBLE_EQ(law.of(0.01), 1.4 * 0.825);
   EXPECT_DOUBLE_EQ(law.of(0.01125), 1.4 * 0.847);  // half-way
   EXPECT_DOUBLE_EQ(law.of(0.0), 1.4 * 0.713);
   EXPECT_DOUBLE_EQ(law.of(1.0), 1.4);
-  // the longest path has γ of the settings at any draw rate
+  // the longest path has the γ of the settings at any draw rate
   EXPECT_DOUBLE_EQ((GainLaw{2.0, 0.0, 100.0, true}.of(0.01)), 2.0);
   EXPECT_GT((GainLaw{2.0, 0.0, 100.0, true}.of(0.0125)), 2.0);
 }
 
-TEST(GainLaw, FromTheSkinMovesPressuresAndNoPaths) {
+TEST(GainLaw, FromTheSkinChangesPressuresButNotPaths) {
   const TargetField field = fields::make(Pattern::Fingertips, 3);
   PlanSettings settings = settings_with("best", 0.0);
   const Plan plain = test::plan_of(settings, field);
@@ -104,7 +104,7 @@ TEST(GainLaw, FromTheSkinMovesPressuresAndNoPaths) {
   EXPECT_THROW(Planner(settings, 100), std::invalid_argument);
 }
 
-TEST(GainLaw, ScalesTheRenderedPressuresOfEveryPresetAndNoScore) {
+TEST(GainLaw, ScalesTheRenderedPressuresOfEveryPresetButNoScore) {
   for (const char* preset : {"paper", "paper-valid", "best", "fast"}) {
     for (const Pattern pattern : {Pattern::FourPlumes, Pattern::Fingertips, Pattern::Letter}) {
       SCOPED_TRACE(std::string(preset) + " on " + fields::to_string(pattern));
@@ -133,7 +133,7 @@ TEST(GainLaw, ShortPathsAreRenderedWeakerAndTheWrongLawShows) {
   EXPECT_GT(score_plan(field, plan, 0, settings.sigma, {1.4}).rmse, 1.1 * own);
 }
 
-TEST(GainLaw, CountsThePeriodOnTheSkin) {
+TEST(GainLaw, UsesThePeriodOnTheSkin) {
   const TargetField field =
       fields::with_skin(fields::make(Pattern::Ridge, 2), fields::SkinShape::Fist, false);
   const Plan plain = test::plan_of(settings_with("best", 0.0), field);
@@ -146,8 +146,8 @@ TEST(GainLaw, CountsThePeriodOnTheSkin) {
   ASSERT_NO_FATAL_FAILURE(expect_scaled(plain, scaled, -1.0));
 }
 
-TEST(GainLaw, EachPathIsDividedByItsOwn) {
-  // two distant points at rest, each with its own period
+TEST(GainLaw, EachPathIsDividedByItsOwnGain) {
+  // two distant points at rest with different periods
   Plan plan;
   for (const double x : {-0.05, 0.05}) {
     FocalPath path;
@@ -170,7 +170,7 @@ TEST(GainLaw, EachPathIsDividedByItsOwn) {
   EXPECT_DOUBLE_EQ(field[1], 1.0);
 }
 
-TEST(GainLaw, ControlsAndTheTextbookScoreAsWithAConstant) {
+TEST(GainLaw, ControlsAndTheTextbookScoreAsWithAConstantGain) {
   const TargetField field = fields::make(Pattern::FourPlumes, 5);
   const TargetField elsewhere = fields::make(Pattern::Fingertips, 5);
   const PlanSettings plain = settings_with("best", 0.0), scaled = settings_with("best", kExponent);
@@ -191,7 +191,7 @@ TEST(GainLaw, ControlsAndTheTextbookScoreAsWithAConstant) {
   ASSERT_NO_FATAL_FAILURE(expect_scaled(c, d, kExponent));
 }
 
-TEST(GainLaw, BoundsAreToldInOneSentence) {
+TEST(GainLaw, BoundsAreReportedInOneSentence) {
   for (const double exponent : {-2.1, 2.1}) {
     try {
       Planner planner(settings_with("best", exponent), 100);

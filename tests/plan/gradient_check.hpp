@@ -1,5 +1,5 @@
 #pragma once
-/// Checks the gradient of the cost of `fast` and `best` against differences.
+/// Compares the gradient of the cost of `fast` and `best` with differences.
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ struct GradientCheck {
               at.gradient_y[a]);
     }
   }
-  /// The cost has kinks where a cell changes its closest segment, so a few may be off.
+  /// The cost has kinks where a cell changes its closest segment, so a few differences may be off.
   void expect_agreement() const { EXPECT_LT(off, tried / 10) << off << " of " << tried; }
 
  private:

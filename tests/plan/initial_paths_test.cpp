@@ -36,7 +36,7 @@ std::size_t nearest(const Clusters& clusters, const Vec2& x) {
   return best;
 }
 
-TEST(WeightedKMeans, EndsWhereEveryCentreIsTheMeanOfItsNearestPoints) {
+TEST(WeightedKMeans, EndsWhenEveryCentreIsTheMeanOfItsNearestPoints) {
   Random random(31);
   for (int trial = 0; trial < 30; ++trial) {
     const Cloud cloud = random_cloud(random, 60 + random.below(1500));
@@ -47,7 +47,7 @@ TEST(WeightedKMeans, EndsWhereEveryCentreIsTheMeanOfItsNearestPoints) {
     ASSERT_LT(iterations, 10'000);
     ASSERT_EQ(clusters.centre.size(), 50u);
 
-    // a fixed point of Lloyd's iteration by its plain definition, without the shortcuts
+    // a fixed point of Lloyd's iteration by its plain definition, without shortcuts
     std::array<Vec2, kMaxClusters> sum;
     sum.fill(Vec2::Zero());
     std::array<double, kMaxClusters> mass{};
@@ -63,7 +63,7 @@ TEST(WeightedKMeans, EndsWhereEveryCentreIsTheMeanOfItsNearestPoints) {
   }
 }
 
-TEST(WeightedKMeans, FewPointsAreTheirOwnClusters) {
+TEST(WeightedKMeans, FewPointsFormTheirOwnClusters) {
   Random random(32);
   for (const int count : {1, 2, 7, 50}) {
     const Cloud cloud = random_cloud(random, count);
@@ -136,7 +136,7 @@ TEST(Tours, SmallToursAreNearlyAlwaysTheShortest) {
   EXPECT_GE(optimal, 95);
 }
 
-TEST(Tours, SplitsShareOutTheClustersAndMeetTheLength) {
+TEST(Tours, SplitsDistributeTheClustersAndKeepTheLength) {
   Random random(35);
   for (int trial = 0; trial < 50; ++trial) {
     const Cloud cloud = random_cloud(random, 1 + random.below(50));
@@ -157,8 +157,8 @@ TEST(Tours, SplitsShareOutTheClustersAndMeetTheLength) {
   }
 }
 
-TEST(Tours, ASplitIsAtTheMidpointAlongTheWeightedDirection) {
-  // heavy points spread along x, a light one lies far away along y: the cut is orthogonal to x
+TEST(Tours, SplitsAreAtTheMidpointAlongTheWeightedDirection) {
+  // heavy points spread along x, a light one far away along y: the cut is orthogonal to x
   Clusters clusters;
   for (const double x : {0.0, 40.0, 100.0}) {
     clusters.centre.push_back(Vec2(x, 0.0));
@@ -194,7 +194,7 @@ TEST(Tours, SamplesAreAtEqualArcLengths) {
   }
 }
 
-TEST(Tours, ThinSetsOfClustersStartAsLoopsThatEncloseThem) {
+TEST(Tours, ThinSetsOfClustersStartAsEnclosingLoops) {
   for (const int count : {1, 2, 3, 6}) {
     Clusters clusters;
     for (int i = 0; i < count; ++i) {

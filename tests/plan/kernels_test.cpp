@@ -1,4 +1,4 @@
-/// The kernels that read a target and search near samples, compared with plain code.
+/// The kernels that read a target and find close samples, compared with plain code.
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ struct Block {
 };
 using Tile = std::array<Block, 8>;
 
-/// Returns the tiles that have skin, summed cell by cell.
+/// Returns the tiles with skin, summed cell by cell.
 std::vector<Tile> tiles_of(const TargetField& field, double maximum, int factor) {
   std::optional<CellWeights> weights;
   if (!field.weight.empty()) weights.emplace(field, maximum);
@@ -71,7 +71,7 @@ std::vector<Tile> tiles_of(const TargetField& field, double maximum, int factor)
   return tiles;
 }
 
-TEST(CellTiles, AreTheBlocksThatAPlainLoopAverages) {
+TEST(CellTiles, MatchThePlainAverageOfBlocks) {
   Random random(1);
   CellTiles cells(1600);
   for (std::uint64_t n = 0; n < test::reduced(5000); ++n) {
@@ -106,7 +106,7 @@ TEST(CellTiles, AreTheBlocksThatAPlainLoopAverages) {
   }
 }
 
-TEST(NodePairs, AreThoseThatAPlainLoopFinds) {
+TEST(NodePairs, MatchThePlainSearch) {
   Random random(2);
   NodePairs pairs;
   for (std::uint64_t n = 0; n < test::reduced(3000); ++n) {
@@ -134,7 +134,7 @@ TEST(NodePairs, AreThoseThatAPlainLoopFinds) {
   }
 }
 
-/// Returns loops that may be long, uneven and crossed.
+/// Returns loops that may be long, irregular and crossing.
 std::vector<Vec2> random_loops(Random& random, int paths, int samples) {
   std::vector<Vec2> x;
   for (int k = 0; k < paths; ++k) {
@@ -149,7 +149,7 @@ std::vector<Vec2> random_loops(Random& random, int paths, int samples) {
   return x;
 }
 
-TEST(Spacing, LeavesNoCrossingAndNothingTooNear) {
+TEST(Spacing, LeavesNoCrossingAndNothingTooClose) {
   Random random(3);
   SpacingRule rule;
   rule.spacing = 7.8;

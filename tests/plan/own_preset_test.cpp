@@ -1,4 +1,4 @@
-/// A preset that prostm does not name: its traits alone decide how paths are planned.
+/// A preset unknown to prostm: only its traits decide how paths are planned.
 
 #include <gmock/gmock.h>
 
@@ -34,7 +34,7 @@ TEST(OwnPreset, PlansByItsTraits) {
   }
 }
 
-TEST(OwnPreset, NothingButTheTraitsDistinguishesPresets) {
+TEST(OwnPreset, OnlyTheTraitsDistinguishPresets) {
   const TargetField field = fields::make(fields::kPatterns[1], 2);
   for (std::size_t i = 0; i < kPresetTraits.size(); ++i) {
     PlanSettings named;
@@ -49,7 +49,7 @@ TEST(OwnPreset, NothingButTheTraitsDistinguishesPresets) {
   }
 }
 
-TEST(OwnPreset, TakesTheSettingsOfItsTraits) {
+TEST(OwnPreset, AcceptsTheSettingsOfItsTraits) {
   PlanSettings settings = with(kThrifty);
   settings.budget = 1e-3;
   EXPECT_NO_THROW(validate(settings));
@@ -57,13 +57,13 @@ TEST(OwnPreset, TakesTheSettingsOfItsTraits) {
   settings.own_preset = &kPlain;
   try {
     validate(settings);
-    ADD_FAILURE() << "a budget was taken";
+    ADD_FAILURE() << "a budget was accepted";
   } catch (const std::invalid_argument& error) {
     EXPECT_THAT(error.what(), HasSubstr("a budget is for preset best, not plain"));
   }
 }
 
-TEST(Presets, AreListedByWhatTheyTake) {
+TEST(Presets, AreListedByTheirTraits) {
   EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.takes_budget; }), "preset best");
   EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.is_fitted(); }),
             "presets best and fast");

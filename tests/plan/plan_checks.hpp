@@ -1,5 +1,5 @@
 #pragma once
-/// Checks for valid plans, without the planner's own geometry.
+/// Checks for valid plans that do not use the planner's own geometry.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ inline double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
   return (a + t * (b - a) - p).norm();
 }
 
-/// Returns whether two segments cross or come within half a micrometre.
+/// Returns whether two segments cross or come within half a micrometre of each other.
 inline bool touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const auto side = [](const Vec2& o, const Vec2& e, const Vec2& p) { return cross(e - o, p - o); };
   if (side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0) return true;
@@ -33,7 +33,7 @@ inline bool touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
                    distance_to_segment(c, a, b), distance_to_segment(d, a, b)}) < 0.5e-6;
 }
 
-/// Counts pairs of segments that touch, over all paths, except neighbours on a path.
+/// Counts pairs of segments that touch, over all paths, excluding neighbours on a path.
 inline int touching_pairs(const Plan& plan) {
   int count = 0;
   for (std::size_t k = 0; k < plan.paths.size(); ++k) {
@@ -50,7 +50,7 @@ inline int touching_pairs(const Plan& plan) {
   return count;
 }
 
-/// Checks for finite points, finite pressures of at least 0, and the stated length, speed and
+/// Checks for finite points, finite non-negative pressures, and the stated length, speed and
 /// period.
 inline void expect_finite_plan(const Plan& plan, int samples) {
   for (const FocalPath& path : plan.paths) {
@@ -60,12 +60,12 @@ inline void expect_finite_plan(const Plan& plan, int samples) {
     for (const double p : path.pressure) ASSERT_TRUE(std::isfinite(p) && p >= 0.0) << p;
     ASSERT_GT(path.length, 0.0);
     ASSERT_DOUBLE_EQ(path.length, closed_length(path));
-    // the period is that of the length on the skin, which is flat here and summed otherwise
+    // the period follows from the length on the skin, which is flat here and summed otherwise
     ASSERT_NEAR(path.period * path.speed, path.length, 1e-12 * path.length);
   }
 }
 
-/// Checks for closed paths of at most L with distinct points that cross neither themselves nor
+/// Checks for closed paths of at most L with distinct points, which cross neither themselves nor
 /// others.
 inline void expect_valid_plan(const Plan& plan, int samples, double max_length) {
   ASSERT_NO_FATAL_FAILURE(expect_finite_plan(plan, samples));
@@ -79,7 +79,7 @@ inline void expect_valid_plan(const Plan& plan, int samples, double max_length) 
   ASSERT_EQ(touching_pairs(plan), 0);
 }
 
-/// Checks bitwise equality of two plans; the second one's pressures are `scale` times the first
+/// Checks two plans for bitwise equality; the second one's pressures are `scale` times the first
 /// one's.
 inline void expect_same_plan(const Plan& a, const Plan& b, double scale) {
   ASSERT_EQ(a.paths.size(), b.paths.size());
@@ -94,8 +94,8 @@ inline void expect_same_plan(const Plan& a, const Plan& b, double scale) {
   }
 }
 
-/// Checks that points of two plans agree to 1e-9 m, and pressures to 1e-9 after dividing the second
-/// one's by `scale`.
+/// Checks that points of two plans agree within 1e-9 m, and pressures within 1e-9 after dividing
+/// the second one's by `scale`.
 inline void expect_scaled_plan(const Plan& a, const Plan& b, double scale) {
   ASSERT_EQ(a.paths.size(), b.paths.size());
   for (std::size_t k = 0; k < a.paths.size(); ++k) {

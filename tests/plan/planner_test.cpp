@@ -53,7 +53,7 @@ TEST(Planner, PlansEveryPatternWithFourPaths) {
   }
 }
 
-TEST(Planner, SameInputGivesTheSamePlanToTheBit) {
+TEST(Planner, TheSameInputGivesTheSamePlanBitForBit) {
   for (const Pattern pattern : fields::kPatterns) {
     const TargetField field = fields::make(pattern, 3);
     Planner first(preset("paper-valid"), field.size()),
@@ -61,7 +61,7 @@ TEST(Planner, SameInputGivesTheSamePlanToTheBit) {
     Plan a, b, c;
     PlanStats stats;
     first.plan(field, a, stats);
-    // neither another planner nor a plan in between changes the result
+    // neither another planner nor a plan in between affects the result
     second.plan(fields::make(Pattern::Noise, 9), b, stats);
     second.plan(field, b, stats);
     first.plan(field, c, stats);
@@ -70,7 +70,7 @@ TEST(Planner, SameInputGivesTheSamePlanToTheBit) {
   }
 }
 
-TEST(Planner, APressureScaleOfAPowerOfTwoScalesThePressuresAlone) {
+TEST(Planner, APressureScaleOfAPowerOfTwoScalesOnlyThePressures) {
   for (const char* name : {"paper", "paper-valid", "best", "fast"}) {
     Planner planner(preset(name), fields::kCells * fields::kCells);
     for (const Pattern pattern : fields::kPatterns) {
@@ -107,7 +107,7 @@ std::vector<TargetField> fields_for_units() {
   return list;
 }
 
-TEST(Planner, TheUnitOfPressureChangesNoPath) {
+TEST(Planner, TheUnitOfPressureDoesNotChangePaths) {
   const std::vector<TargetField> list = fields_for_units();
   for (const char* name : {"paper", "paper-valid", "best", "fast", "textbook"}) {
     const bool is_textbook = std::string(name) == "textbook";
@@ -134,7 +134,7 @@ TEST(Planner, TheUnitOfPressureChangesNoPath) {
   }
 }
 
-TEST(Planner, TheUnitOfPressureGivesNoHandMorePaths) {
+TEST(Planner, TheUnitOfPressureDoesNotChangeTheShares) {
   // two hands of equal total pressure, summed in another order
   TargetFrame frame;
   frame.patches.push_back(fields::make(Pattern::Noise, 5));
@@ -157,7 +157,7 @@ TEST(Planner, TheUnitOfPressureGivesNoHandMorePaths) {
   }
 }
 
-TEST(Planner, AllocatesNothing) {
+TEST(Planner, DoesNotAllocate) {
   for (const char* name : {"paper", "paper-valid", "best", "fast"}) {
     Planner planner(preset(name), fields::kCells * fields::kCells);
     TargetFrame frame;
@@ -173,7 +173,7 @@ TEST(Planner, AllocatesNothing) {
   }
 }
 
-TEST(Planner, TellsEmptyAndInvalidTargetsApart) {
+TEST(Planner, DistinguishesEmptyAndInvalidTargets) {
   Planner planner(PlanSettings{}, 100);
   Plan plan;
   PlanStats stats;
@@ -194,7 +194,7 @@ TEST(Planner, TellsEmptyAndInvalidTargetsApart) {
   EXPECT_EQ(planner.plan(palm_of(11, 10), plan, stats), PlanStatus::InvalidTarget);
 }
 
-TEST(Planner, AFewCellsGiveOneLoopAboutThem) {
+TEST(Planner, AFewCellsGetOneLoopAroundThem) {
   Planner planner(preset("paper-valid"), 400);
   for (const int cells : {1, 2, 3, 5}) {
     TargetField field = palm_of(20, 20);
@@ -250,7 +250,7 @@ TEST(Planner, SharesPathsOverTwoHands) {
   EXPECT_EQ(paths_of(0), 2);
   EXPECT_EQ(paths_of(1), 2);
 
-  // a weak hand still gets one path, an empty hand gets no path
+  // a weak hand still gets one path, an empty hand none
   for (double& p : frame.patches[1].pressure) p *= 1e-3;
   ASSERT_EQ(planner.plan(frame, plan, stats), PlanStatus::Planned);
   EXPECT_EQ(paths_of(0), 3);
@@ -259,7 +259,7 @@ TEST(Planner, SharesPathsOverTwoHands) {
   ASSERT_EQ(planner.plan(frame, plan, stats), PlanStatus::Planned);
   EXPECT_EQ(paths_of(0), 4);
 
-  // equal to the plan of a single target
+  // equals the plan of a single target
   Plan single;
   planner.plan(frame.patches[0], single, stats);
   ASSERT_NO_FATAL_FAILURE(test::expect_same_plan(single, plan, 1.0));
@@ -270,7 +270,7 @@ TEST(Planner, SharesPathsOverTwoHands) {
   EXPECT_EQ(planner.plan(TargetFrame{}, plan, stats), PlanStatus::EmptyTarget);
 }
 
-TEST(Planner, SettingsThatAreOutOfBoundsAreNamed) {
+TEST(Planner, SettingsOutOfBoundsAreReported) {
   const auto message = [](PlanSettings settings) -> std::string {
     try {
       Planner planner(settings, 100);
@@ -291,7 +291,7 @@ TEST(Planner, SettingsThatAreOutOfBoundsAreNamed) {
   EXPECT_NE(message(settings).find("gain = "), std::string::npos);
 }
 
-/// Plans 10^4 fields of every kind.
+/// Plans 10^4 fields of all kinds.
 TEST(Planner, RandomFieldsGiveValidPlansOrTheStatedStatus) {
   constexpr int kMaxSide = 48;
   const test::Seeds seeds = test::seeds(10'000);

@@ -21,7 +21,7 @@ namespace {
 
 using namespace planning;
 
-/// Uneven loops with equations like those of nearby cells, and steep right sides.
+/// Irregular loops with equations like those of nearby cells, and steep right-hand sides.
 struct Problem {
   Loops loops;
   PressureEquations equations;
@@ -91,14 +91,14 @@ void expect_playable(const Problem& problem, std::uint64_t seed) {
         << "seed " << seed << ": " << p;
     ASSERT_LE(std::abs(std::sqrt(p) - std::sqrt(q)), problem.step(a) * (1.0 + 1e-5) + 1e-6)
         << "seed " << seed << ", node " << a;
-    // p is linear between nodes, so its root is steepest beside the lower one
+    // p is linear between nodes, so its root is steepest next to the lower one
     ASSERT_LE(std::sqrt(0.5 * (p + q)) - std::sqrt(std::min(p, q)),
               0.5 * problem.step(a) * (1.0 + 1e-5) + 1e-6)
         << "seed " << seed << ", half way after node " << a;
   }
 }
 
-TEST(Playable, WhatIsSoftenedIsNeverTooSteep) {
+TEST(Playable, SoftenedPressuresAreNeverTooSteep) {
   const test::Seeds seeds = test::seeds(20'000);
   for (std::uint64_t seed = seeds.first; seed < seeds.end; ++seed) {
     Problem problem(seed);
@@ -109,8 +109,8 @@ TEST(Playable, WhatIsSoftenedIsNeverTooSteep) {
 }
 
 /// Takes thousands of projected gradient steps: each on the form, then to the middle between the
-/// largest roots below and the smallest above that are not too steep, found by a tour from every
-/// node of a path in both directions. @return the least form of all.
+/// largest root below and the smallest root above that are not too steep, found by a walk from
+/// every node of a path in both directions. @return the smallest form of all.
 double slow_least(const Problem& problem) {
   const Loops& loops = problem.loops;
   const auto n = static_cast<std::size_t>(loops.samples),
@@ -138,7 +138,7 @@ double slow_least(const Problem& problem) {
     }
     for (std::size_t i = 0; i < n; ++i) u[i * lanes + k] = 0.5 * (low[i] + high[i]);
   };
-  double least = 0.0;  // the form of silence
+  double least = 0.0;  // the form at zero pressure
   for (int step = 0; step < 4000; ++step) {
     const double rate = 0.02 / (1.0 + step / 400);
     for (std::size_t a = 0; a < p.size(); ++a) {
@@ -157,7 +157,7 @@ double slow_least(const Problem& problem) {
   return least;
 }
 
-TEST(Playable, SoftenedPressuresAreNearlyTheBestThatCanBePlayed) {
+TEST(Playable, SoftenedPressuresAreNearlyThePlayableOptimum) {
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
     Problem problem(seed);
     if (problem.loops.paths > 2 || problem.loops.samples > 40) continue;
@@ -165,7 +165,7 @@ TEST(Playable, SoftenedPressuresAreNearlyTheBestThatCanBePlayed) {
     const double slow = slow_least(problem);
     soften(problem.loops, problem.bounds, problem.equations, problem.pressure);
     make_playable(problem.loops, problem.bounds, problem.pressure);
-    // both are negative: the gain over silence
+    // both are negative: the gain over zero pressure
     EXPECT_LE(problem.form(problem.pressure), 0.99 * slow) << seed;
   }
 }
@@ -229,7 +229,7 @@ TargetField contact(double width) {
   return field;
 }
 
-/// Computes a focal point's places and pressures in the second lap of a path as emitted: the
+/// Computes a focal point's positions and pressures in the second lap of a path as emitted: the
 /// intensity follows √(p / full scale), by at most 1/40 per sample at 40 kHz.
 void second_lap(const FocalPath& path, double full_scale, std::vector<Vec2>& places,
                 std::vector<double>& played) {
@@ -285,7 +285,7 @@ double planned_rmse(const TargetField& field, const Plan& plan) {
   return score_plan(field, plan, 0, 8.6e-3, {1.4}).rmse;
 }
 
-TEST(Playable, ASmallContactIsPlayedAsItIsPlanned) {
+TEST(Playable, ASmallContactIsPlayedAsPlanned) {
   for (const double width : {2e-3, 3e-3, 4e-3, 7e-3}) {
     SCOPED_TRACE(width);
     const TargetField field = contact(width);
@@ -313,7 +313,7 @@ TEST(Playable, NoPathIsSilent) {
   }
 }
 
-TEST(Playable, ASmallContactGetsNoMorePathsThanServeIt) {
+TEST(Playable, ASmallContactGetsNoSuperfluousPaths) {
   // one lap of 140 mm circles the whole contact more than once
   EXPECT_LE(test::plan_of(preset("best"), contact(2e-3)).paths.size(), 2U);
   EXPECT_LE(test::plan_of(preset("best"), contact(3e-3)).paths.size(), 2U);

@@ -64,7 +64,7 @@ TEST(PlanQuality, ReachesTheTextbookOnThePapersExample) {
   EXPECT_LE(valid.rmse, paper.rmse + 0.01);
   EXPECT_GE(valid.coverage, paper.coverage - 0.01);
 
-  // the textbook reaches its measured quality, so that it is a fair baseline
+  // the textbook reaches the quality measured for it, so it is a fair baseline
   const Metrics textbook = median_over_seeds(
       target, "paper", [](const TargetField& field, const PlanSettings& settings, Plan& plan) {
         PlanStats stats;
@@ -75,7 +75,7 @@ TEST(PlanQuality, ReachesTheTextbookOnThePapersExample) {
   EXPECT_GE(textbook.coverage, 0.56);
 }
 
-TEST(PlanQuality, TurningTheFieldLeavesTheMeanErrorAlone) {
+TEST(PlanQuality, RotatingTheFieldKeepsTheMeanError) {
   const int frames = static_cast<int>(test::reduced(200));
   PlanSettings settings;
   settings.preset = Preset::Paper;
@@ -92,11 +92,11 @@ TEST(PlanQuality, TurningTheFieldLeavesTheMeanErrorAlone) {
     planner.plan(rotated, plan, stats);
     turned += score_plan(rotated, plan, 0, settings.sigma, settings.gain_law()).rmse;
   }
-  // under a sanitizer fewer fields leave more scatter
+  // fewer fields under a sanitizer leave more scatter
   EXPECT_NEAR(turned / upright, 1.0, frames == 200 ? 0.02 : 0.1);
 }
 
-TEST(PlanQuality, EveryControlLosesToThePlan) {
+TEST(PlanQuality, EveryControlScoresBelowThePlan) {
   PlanSettings settings;
   Planner planner(settings, fields::kCells * fields::kCells);
   for (const fields::Pattern pattern : fields::kPatterns) {

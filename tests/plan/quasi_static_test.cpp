@@ -41,7 +41,7 @@ TargetField raster_of(int rows, int cols) {
   return raster;
 }
 
-/// Computes Eq. (1) by its definition: over every segment of every path of the patch.
+/// Computes Eq. (1) by its definition: over all segments of all paths of the patch.
 double field_at(const Plan& plan, int patch, const Vec2& x) {
   double nearest = HUGE_VAL, pressure = 0.0;
   for (const FocalPath& path : plan.paths) {
@@ -60,7 +60,7 @@ double field_at(const Plan& plan, int patch, const Vec2& x) {
 }
 
 // Cells from far finer than segments, which are searched tile by tile, to coarser ones.
-TEST(PathSegments, FindsOnARasterWhatItFindsAtEachPoint) {
+TEST(PathSegments, FindTheSameOnARasterAsAtEachPoint) {
   Random random(22);
   for (int trial = 0; trial < 60; ++trial) {
     Plan plan = random_plan(random, 1 + random.below(8), 3 + random.below(62));
@@ -105,8 +105,8 @@ TEST(QuasiStaticField, AgreesWithItsDefinition) {
   }
 }
 
-TEST(QuasiStaticField, OfEquallyNearPointsTheFirstPathCounts) {
-  // two mirrored squares; the middle column is equally far from both
+TEST(QuasiStaticField, OfEquallyNearPointsTheFirstPathIsUsed) {
+  // two mirrored squares; the middle column has the same distance to both
   Plan plan;
   for (const double side : {-1.0, 1.0}) {
     FocalPath path;
@@ -127,7 +127,7 @@ TEST(QuasiStaticField, OfEquallyNearPointsTheFirstPathCounts) {
   EXPECT_GT(field[raster.index(1, 0)], field[raster.index(1, 2)]);
 }
 
-TEST(QuasiStaticField, AllocatesNothing) {
+TEST(QuasiStaticField, DoesNotAllocate) {
   Random random(22);
   const Plan plan = random_plan(random, 4, 20);
   const TargetField raster = raster_of(40, 40);

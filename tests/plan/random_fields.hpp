@@ -1,5 +1,5 @@
 #pragma once
-/// Random target fields of every kind that a planner may receive, with many odd ones.
+/// Random target fields of every kind that a planner may receive, including many unusual ones.
 
 #include <cmath>
 #include <limits>
@@ -71,7 +71,7 @@ inline void add_blobs(TargetField& field, Random& random) {
   }
 }
 
-/// Sets one bad value or shape.
+/// Sets one invalid value or shape.
 inline void spoil(TargetField& field, Random& random) {
   const auto i = static_cast<std::size_t>(random.below(static_cast<int>(field.size())));
   switch (random.below(5)) {

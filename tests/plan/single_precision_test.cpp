@@ -1,4 +1,4 @@
-// Copies of a target in single precision, as other programs write recordings.
+// Copies of a target in single precision, as in recordings by other programs.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-/// Plans of the presets best and fast on uneven skins.
+/// Plans of the presets best and fast on uneven skin.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,8 +38,8 @@ LiftedPlan lifted_on(const TargetField& field, const Plan& plan) {
   return lifted;
 }
 
-/// Checks for closed, simple paths without crossings and with their spacing in the plane, at most L
-/// long on the skin and with the period of that length.
+/// Checks for closed, simple paths without crossings, with the spacing in the plane, at most L long
+/// on the skin, and with the period of that length.
 void expect_valid_on_skin(const TargetField& field, const Plan& plan) {
   std::vector<Vec2> points;
   const LiftedPlan lifted = lifted_on(field, plan);
@@ -99,7 +99,7 @@ void expect_speed_and_period(const LiftedPath& lifted, const FocalPath& path) {
     ASSERT_LE(d, 1.005 * even);
     slow += d < 0.98 * even ? 1 : 0;
   }
-  // a step that cuts a corner is shorter than the path between its ends
+  // a step across a corner is shorter than the path between its ends
   const std::size_t corners = lifted.p_D.size();
   ASSERT_LE(slow, corners / 5) << "of " << lap << ", with " << corners << " corners";
   ASSERT_NEAR(travelled / static_cast<double>(lap), even, 0.02 * even);
@@ -107,7 +107,7 @@ void expect_speed_and_period(const LiftedPath& lifted, const FocalPath& path) {
 
 class OnSkin : public testing::TestWithParam<const char*> {};
 
-TEST_P(OnSkin, LengthSpeedAndPeriodAreThoseOfTheSkin) {
+TEST_P(OnSkin, LengthSpeedAndPeriodAreThoseOnTheSkin) {
   Planner planner(preset(GetParam()), kCells);
   double longest = 0.0, most_stretched = 1.0;
   for (const SkinShape shape : fields::kSkinShapes) {
@@ -134,15 +134,15 @@ TEST_P(OnSkin, LengthSpeedAndPeriodAreThoseOfTheSkin) {
       }
     }
   }
-  // the shapes do lengthen paths, and plans use the length
+  // the shapes do lengthen paths, and plans account for it
   EXPECT_GT(most_stretched, 1.3);
   EXPECT_GT(longest, 0.1385);
   RecordProperty("longest_mm", std::to_string(1e3 * longest));
 }
 INSTANTIATE_TEST_SUITE_P(Presets, OnSkin, testing::Values("best", "fast"));
 
-/// Adds bumps and hollows, smooth or in voxels, up to slopes that no hand has; one skin in ten has
-/// no neighbouring cells at equal height.
+/// Adds bumps and hollows, smooth or in voxels, up to slopes that no hand has; on one skin in ten
+/// no neighbouring cells have equal height.
 void make_bumpy(TargetField& field, Random& random) {
   const double steepest = std::pow(10.0, random.uniform(-2.0, 1.0));
   const double voxel = random.uniform() < 0.3 ? fields::kVoxel : 0.0;
@@ -185,7 +185,7 @@ TEST(OnBumpySkin, RandomPlansAreValidAndNeverTooLong) {
     Plan plan;
     PlanStats stats;
     Planner& planner = seed % 4 == 0 ? best : fast;
-    // half of them continue from a plan of another target
+    // half of them continue from a plan for another target
     if (seed % 8 < 4) planner.reset();
     if (planner.plan(input.field, plan, stats) != PlanStatus::Planned) continue;
     ++planned;

@@ -1,4 +1,4 @@
-/// The textbook planner is compiled once for each kind of machine and chosen at run time.
+/// The textbook planner is compiled once per kind of machine and selected at run time.
 
 #include "prostm/textbook/textbook.hpp"
 
@@ -10,7 +10,7 @@
 namespace prostm {
 namespace {
 
-/// Allows this target alone during its lifetime.
+/// Allows only this target during its lifetime.
 class Only {
  public:
   explicit Only(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }

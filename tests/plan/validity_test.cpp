@@ -39,7 +39,7 @@ std::vector<Vec2> circle(const Vec2& centre, double radius, int samples) {
   return x;
 }
 
-TEST(MakeValid, LeavesValidPathsAsTheyAre) {
+TEST(MakeValid, LeavesValidPathsUnchanged) {
   std::vector<Vec2> x = circle({0, 0}, 20, 20);
   const std::vector<Vec2> second = circle({50, 0}, 20, 20);
   x.insert(x.end(), second.begin(), second.end());
@@ -67,7 +67,7 @@ TEST(MakeValid, UntanglesAFigureOfEightWithoutMovingItsPoints) {
   EXPECT_EQ(x, before);
 }
 
-TEST(MakeValid, ScalesALongPathToTheBoundAboutItsCentroid) {
+TEST(MakeValid, ScalesALongPathAboutItsCentroid) {
   std::vector<Vec2> x = circle({30, 5}, 30, 20);
   EXPECT_EQ(make_valid(x, 20, kLength), 1);
   EXPECT_NEAR(loop_length(x), kLength, 1e-9);
@@ -87,7 +87,7 @@ TEST(MakeValid, PushesACrossingPathOffTheHeavierOne) {
 }
 
 TEST(MakeValid, ShrinksOrDropsPathsThatCoverEachOther) {
-  // the same circle eight times: the circles shrink into each other, down to the smallest length
+  // the same circle eight times: the circles shrink inside each other, down to the smallest length
   std::vector<Vec2> x;
   for (int k = 0; k < 8; ++k) {
     const std::vector<Vec2> one = circle({1e-4 * k, 0}, 22, 20);
@@ -104,7 +104,7 @@ TEST(MakeValid, MakesAnythingValid) {
   const std::uint64_t count = test::reduced(4000);
   for (std::uint64_t trial = 0; trial < count; ++trial) {
     SCOPED_TRACE("trial " + std::to_string(trial));
-    // random points, points on a line, points on a coarse lattice (many coincide), equal points
+    // random points, collinear points, points on a coarse lattice (many coincide), equal points
     const int samples = 8 + random.below(kMaxPathPoints - 7), paths = 1 + random.below(kMaxPaths);
     const int kind = random.below(4);
     const double spread = std::pow(10.0, random.uniform(-4.0, 2.5));

@@ -1,4 +1,4 @@
-/// The planner on every set of vector instructions of this processor.
+/// The planner on every vector target of this processor.
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ double mean(const std::array<double, kPatterns.size()>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// The order of sums and the ways downhill differ; over enough plans the mean results must not.
+/// The order of sums and the descent paths differ, but the mean results over many plans must not.
 void expect_as_good_as_plain(const PlanSettings& settings, int frames, std::int64_t targets) {
   std::array<double, kPatterns.size()> plain{};
   {
@@ -61,13 +61,13 @@ void expect_as_good_as_plain(const PlanSettings& settings, int frames, std::int6
   }
 }
 
-TEST(Vectors, FastRendersTheGalleryAsWellOnEverySet) {
+TEST(Vectors, FastRendersTheGalleryEquallyWellOnEveryTarget) {
   PlanSettings settings;
   settings.preset = Preset::Fast;
   expect_as_good_as_plain(settings, 10, vector_targets());
 }
 
-TEST(Vectors, BestRendersTheGalleryAsWellOnTheBestSet) {
+TEST(Vectors, BestRendersTheGalleryEquallyWellOnTheBestTarget) {
   if (test::reduced(20) < 20) GTEST_SKIP() << "too long under a sanitizer";
   PlanSettings settings;
   settings.fit_starts = settings.fit_kicks = 2;  // more plans in the same time

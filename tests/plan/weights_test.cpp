@@ -1,4 +1,4 @@
-/// Fields with weights, which make some errors count more: (P17).
+/// Fields with weights, which give some errors more influence: (P17).
 
 #include <gtest/gtest.h>
 
@@ -68,7 +68,7 @@ TargetField contacts(std::initializer_list<int> columns) {
   return field;
 }
 
-TEST(CellWeights, AreOverTheirMeanByPressure) {
+TEST(CellWeights, AreRelativeToTheirMeanByPressure) {
   const TargetField field = halved(Pattern::OnePlume, 3, 5.0, 0.5);
   const CellWeights weights(field, max_pressure(field));
   double weighted = 0.0, all = 0.0;
@@ -98,7 +98,7 @@ TEST(CellTiles, AverageABlockByItsWeights) {
   EXPECT_FLOAT_EQ(tile.x[0], 1.5F);  // 0 and 2 mm
   EXPECT_FLOAT_EQ(tile.y[0], 0.0F);
   EXPECT_FLOAT_EQ(tile.pressure[0], 0.625F);
-  // Σ w p* / Σ p* is 5 / 2.5 = 2, so the mean weight is (1 + 3) / 2; a cell has the unit area
+  // Σ w p* / Σ p* is 5 / 2.5 = 2, so the mean weight is (1 + 3) / 2; a cell has unit area
   EXPECT_FLOAT_EQ(cells.mean_weight(0, 0), 2.0F);
   EXPECT_FLOAT_EQ(tile.weight[0], 4.0F);
   EXPECT_FLOAT_EQ(cells.peak(), 1.25F);
@@ -106,7 +106,7 @@ TEST(CellTiles, AverageABlockByItsWeights) {
   EXPECT_EQ(cells.mean_weight(0, 1), 0.0F);
 }
 
-TEST(CellTiles, KeepTheWeightedMassOfTheTarget) {
+TEST(CellTiles, PreserveTheWeightedMassOfTheTarget) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Random random(seed);
     TargetField field = fields::make(fields::kPatterns[seed % fields::kPatterns.size()], 2);
@@ -128,7 +128,7 @@ TEST(CellTiles, KeepTheWeightedMassOfTheTarget) {
   }
 }
 
-TEST(InitialLoops, TourWhatCounts) {
+TEST(InitialLoops, VisitOnlyWeightedContacts) {
   // both contacts, but only one if the other has less than 1 % of its weight
   for (const double right : {1.0, 5e-3}) {
     TargetField field = contacts({12, 32});
@@ -154,7 +154,7 @@ TEST(InitialLoops, TourWhatCounts) {
   }
 }
 
-/// Loops over a pattern with weights, and the cells to render.
+/// Loops on a pattern with weights, and the cells to render.
 struct Case {
   CellTiles cells{kCells};
   Loops loops;
@@ -180,7 +180,7 @@ TEST(Descent, WeightedGradientAgreesWithCentralDifferences) {
   check.expect_agreement();
 }
 
-TEST(Weights, OfOneEverywhereAreAsGoodAsNone) {
+TEST(Weights, OfOneEverywhereEqualNone) {
   for (const char* name : {"best", "fast"}) {
     for (const Pattern pattern : fields::kPatterns) {
       const TargetField field = fields::make(pattern, 7);
@@ -203,7 +203,7 @@ TEST(Weights, ACommonFactorDoesNotMatter) {
   }
 }
 
-TEST(Weights, LeaveThePapersPresetsAsTheyAre) {
+TEST(Weights, DoNotAffectThePapersPresets) {
   for (const char* name : {"paper", "paper-valid"}) {
     const Plan without = plan_of(fields::make(Pattern::OnePlume, 7), preset(name));
     const Plan with = plan_of(halved(Pattern::OnePlume, 7, 4.0, 0.0), preset(name));
@@ -211,12 +211,12 @@ TEST(Weights, LeaveThePapersPresetsAsTheyAre) {
   }
 }
 
-TEST(Weights, OnePathGoesToTheContactThatCountsMore) {
+TEST(Weights, OnePathGoesToTheContactWithMoreWeight) {
   for (const char* name : {"best", "fast"}) {
     PlanSettings settings = preset(name);
     settings.paths = 1;
     for (const bool left : {true, false}) {
-      // so far apart that no path can serve both
+      // so far apart that no path can render both
       TargetField field = contacts({4, 40});
       field.weight.assign(field.size(), 1.0);
       for (int row = 0; row < field.rows; ++row) {
@@ -249,7 +249,7 @@ double rmse_of_rows(const TargetField& field, const Plan& plan, int first, int l
 }
 
 /// `./run bench planner` prints the size of the effect for every pattern.
-TEST(Weights, LowerTheErrorWhereTheyAreGreater) {
+TEST(Weights, LowerTheErrorWhereTheyAreLarge) {
   double upper = 0.0, lower = 0.0;
   for (const Pattern pattern : fields::kPatterns) {
     for (const int frame : {10, 50}) {
@@ -270,7 +270,7 @@ TEST(Weights, LowerTheErrorWhereTheyAreGreater) {
   EXPECT_GT(lower, 0.0);
 }
 
-TEST(Weights, OfNoMatterLeaveAnEmptyTarget) {
+TEST(Weights, OfZeroOnAllPressureGiveAnEmptyTarget) {
   // pressure on the left, weight on the right
   TargetField field = contacts({8});
   for (int row = 0; row < field.rows; ++row) {
@@ -285,7 +285,7 @@ TEST(Weights, OfNoMatterLeaveAnEmptyTarget) {
     EXPECT_EQ(planner.plan(field, plan, stats), PlanStatus::EmptyTarget);
     EXPECT_TRUE(plan.paths.empty());
 
-    // another hand gets all the paths
+    // the other hand gets all paths
     TargetFrame frame;
     frame.patches.push_back(field);
     frame.patches.push_back(fields::make(Pattern::Palm, 1));
@@ -297,7 +297,7 @@ TEST(Weights, OfNoMatterLeaveAnEmptyTarget) {
   EXPECT_EQ(paper.plan(field, plan, stats), PlanStatus::Planned);
 }
 
-TEST(Weights, ThatAreNotValidMakeAnInvalidTarget) {
+TEST(Weights, InvalidOnesGiveAnInvalidTarget) {
   const TargetField good = halved(Pattern::Palm, 1, 2.0, 1.0);
   Plan plan;
   PlanStats stats;

@@ -10,11 +10,11 @@ import prostm
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "tests/support"))  # what the tests of the program and of the module share
+sys.path.append(str(ROOT / "tests/support"))  # shared by the tests of the program and of the module
 
 
 def blobs(rows=24, cols=30, cell=5.0):
-    """Returns two bumps of pressure on a skin with holes: (rows, cols), NaN = no skin; cell in mm."""
+    """Returns two bumps of pressure on skin with holes: (rows, cols), NaN = no skin; cell in mm."""
     y, x = np.mgrid[0:rows, 0:cols] * cell
     p = np.exp(-((x - 60) ** 2 + (y - 60) ** 2) / (2 * 22.0**2))
     p += 0.7 * np.exp(-((x - 100) ** 2 + (y - 40) ** 2) / (2 * 12.0**2))
@@ -35,7 +35,7 @@ def field():
 
 @pytest.fixture(scope="session")
 def program():
-    """Returns a function that runs `prostm ARGUMENTS…` of the environment variable PROSTM and returns its process."""
+    """Returns a function that runs `prostm ARGUMENTS…` with the program in the environment variable PROSTM."""
     path = Path(os.environ.get("PROSTM", ROOT / "build" / "release" / "prostm"))
     assert path.is_file(), f"PROSTM names no program: {path}"
 

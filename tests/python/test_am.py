@@ -1,4 +1,4 @@
-"""The AM baseline from Python: the foci of the command line, their model, and their modulation."""
+"""The AM baseline in Python: the command line's foci, their model, and their modulation."""
 
 import json
 import pickle
@@ -8,7 +8,7 @@ import prostm
 import pytest
 
 
-def test_the_foci_are_those_of_the_command_line(program, tmp_path, pressure):
+def test_the_foci_match_the_command_line(program, tmp_path, pressure):
     np.save(tmp_path / "field.npy", pressure)
     program("plan", tmp_path / "field.npy", "--cell-mm", 5, "--method", "am", "--json", tmp_path / "there.json")
     result = prostm.plan(pressure, cell_mm=5, method="am")
@@ -22,7 +22,7 @@ def test_the_foci_are_those_of_the_command_line(program, tmp_path, pressure):
     assert not read.paths and len(read) == 4
 
 
-def test_the_model_counts_the_nearest_focus(field):
+def test_the_model_uses_the_nearest_focus(field):
     result = prostm.AmPlanner(foci=3, sigma=0.012).plan(field)
     assert result.settings == prostm.AmSettings(foci=3, sigma=0.012) and result.status == prostm.PlanStatus.Planned
     rows, cols = field.pressure.shape
@@ -81,7 +81,7 @@ def test_phases_are_played(field):
         np.testing.assert_allclose(intensities[400:, mine], np.abs(np.sin(np.pi * (k / 200 - 0.3 * f))), atol=1e-6)
 
 
-def test_what_cannot_be(field):
+def test_invalid_plans_and_settings(field):
     focus = prostm.FocalPoint([0, 0], 1.0)
     path = prostm.FocalPath([[0, 0], [0.01, 0]], 1.0)
     for words, call in [
@@ -103,7 +103,7 @@ def test_what_cannot_be(field):
     ]:
         with pytest.raises(ValueError, match=words):
             call()
-    # the other method's emitter refuses such a plan
+    # the other method's emitter rejects such a plan
     emitter = prostm.PathEmitter(full_scale_pressure=1.0)
     emitter.submit(prostm.lift(prostm.Plan(foci=[focus]), field))
     assert emitter.fill(0, 40)[1].max() == 0 and emitter.stats().refused_plans == 1

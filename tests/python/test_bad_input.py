@@ -25,7 +25,7 @@ def changed(row, col, value):
     (np.broadcast_to(0.0, (1001, 1000)), r"\(1001, 1000\); it must have at most 1000000"),
     (np.broadcast_to(0.0, (2**30, 2**29)), "1000000"),
 ])
-def test_arrays_that_are_no_field(pressure, words):
+def test_arrays_that_are_not_fields(pressure, words):
     with pytest.raises(ValueError, match=words):
         prostm.plan(pressure, cell_mm=5)
 
@@ -33,7 +33,7 @@ def test_arrays_that_are_no_field(pressure, words):
 @pytest.mark.parametrize("pressure", [
     "palm", None, [["a", "b"]], np.zeros((3, 3), complex), np.zeros((3, 3), "M8[s]"), [[1, 2], [3]], {"a": 1},
 ])
-def test_things_that_are_no_numbers(pressure):
+def test_values_that_are_not_numbers(pressure):
     with pytest.raises(TypeError, match="pressure must be an array of numbers"):
         prostm.TargetField(pressure, 5e-3)
     with pytest.raises(TypeError, match="pressure must be an array of numbers"):
@@ -54,12 +54,12 @@ def test_things_that_are_no_numbers(pressure):
     ({"cell": 5e-3, "X_DP": np.diag([2, 2, 2, 1])}, "orthonormal"),
     ({"cell": 5e-3, "X_DP": np.eye(3)}, "X_DP has the shape"),
 ])
-def test_fields_that_cannot_be(pressure, options, words):
+def test_invalid_fields(pressure, options, words):
     with pytest.raises(ValueError, match=words):
         prostm.TargetField(pressure, **options)
 
 
-def test_fields_beyond_the_planner(field):
+def test_fields_too_large_for_the_planner(field):
     with pytest.raises(ValueError, match="24 x 30 cells must have at most the planner's max_cells = 100"):
         prostm.Planner(max_cells=100).plan(field)
     with pytest.raises(ValueError, match="cannot be planned"):
@@ -98,14 +98,14 @@ def test_settings_of_another_type(name, value):
     assert settings == prostm.PlanSettings()
 
 
-def test_a_cell_that_is_given_twice(field, tmp_path):
-    with pytest.raises(ValueError, match="says itself"):
+def test_a_cell_size_given_twice(field, tmp_path):
+    with pytest.raises(ValueError, match="contains the size of a cell"):
         prostm.plan(field, cell_mm=5)
     with pytest.raises(ValueError, match="cell_mm"):
         prostm.plan(tmp_path / "x.npy", cell=5e-3)
 
 
-def test_files_are_refused_in_the_words_of_the_command_line(program, tmp_path):
+def test_files_are_rejected_with_the_command_lines_messages(program, tmp_path):
     np.save(tmp_path / "four.npy", np.zeros((2, 2, 2, 2)))
     (tmp_path / "cut.json").write_text('{"format": "prostm-field/1", "cell_mm"')
     (tmp_path / "negative.json").write_text(
@@ -121,7 +121,7 @@ def test_files_are_refused_in_the_words_of_the_command_line(program, tmp_path):
 
 
 def test_pictures_are_read_as_the_command_line_reads_them(tmp_path):
-    grey = np.array([[255, 255, 0], [255, 51, 255]], np.uint8)  # the top row first
+    grey = np.array([[255, 255, 0], [255, 51, 255]], np.uint8)  # top row first
     write_grey_png(tmp_path / "black.png", grey)
     field = prostm.read_field(tmp_path / "black.png", width_mm=30, invert=True)
     np.testing.assert_allclose(field.pressure, [[0, 0.8, 0], [0, 0, 1]], atol=1e-12)
@@ -134,7 +134,7 @@ def test_pictures_are_read_as_the_command_line_reads_them(tmp_path):
     for options, words in [({"width_mm": 20, "cell_mm": 5}, "exclude each other"), ({"width_mm": 0}, "0.01 to 1000 mm"),
                            ({"width_mm": float("nan")}, "width_mm nan over 4 columns"),
                            ({}, "give it in mm with cell_mm, or the width of the field with width_mm"),
-                           ({"width_mm": 20, "invert": True}, "is no picture; leave out invert"),
+                           ({"width_mm": 20, "invert": True}, "is not a picture; leave out invert"),
                            ({"width_mm": 20, "frame": 3}, "holds one field; leave out frame")]:
         with pytest.raises(prostm.InputError, match=words):
             prostm.read_field(tmp_path / "field.npy", **options)
@@ -143,7 +143,7 @@ def test_pictures_are_read_as_the_command_line_reads_them(tmp_path):
         prostm.read_field(tmp_path / "field.json", width_mm=20)
 
 
-def test_pictures_are_planned_by_the_same_keywords(tmp_path):
+def test_images_are_planned_with_the_same_keywords(tmp_path):
     y, x = np.mgrid[0:20, 0:20]
     write_grey_png(tmp_path / "ink.png", np.where(np.hypot(x - 9, y - 11) < 6, 0, 255).astype(np.uint8))
     as_read = {"width_mm": 100, "invert": True}
@@ -168,12 +168,12 @@ def test_pictures_are_planned_by_the_same_keywords(tmp_path):
 
 
 @pytest.mark.parametrize("seconds", [-1, 0, 1e-6, 1e9, float("nan"), float("inf")])
-def test_how_long_a_plan_is_emitted_is_told_in_seconds(field, seconds):
+def test_the_duration_of_an_emission_is_given_in_seconds(field, seconds):
     with pytest.raises(ValueError, match=r"emit\(\): seconds = \S+ must be between 2.5e-05 and 2500$"):
         prostm.emit(prostm.plan(field, "fast"), seconds=seconds)
 
 
-def test_plan_files_that_are_wrong(tmp_path, field):
+def test_invalid_plan_files(tmp_path, field):
     with pytest.raises(ValueError, match="absent.json"):
         prostm.read_plan(tmp_path / "absent.json")
     text = prostm.plan_to_json(prostm.plan(field).plan, field, prostm.PlanSettings())
@@ -197,12 +197,12 @@ def test_plan_files_that_are_wrong(tmp_path, field):
     (([[0, 0], [0.1, 0]], 1.0, 0.0), "speed = 0"),
     (([[0, 0], [0.1, 0]], 1.0, 7.0, 2), "patch = 2"),
 ])
-def test_paths_that_cannot_be(arguments, words):
+def test_invalid_paths(arguments, words):
     with pytest.raises(ValueError, match=words):
         prostm.FocalPath(*arguments)
 
 
-def test_plans_and_their_uses(field):
+def test_plans_are_checked_where_they_are_used(field):
     path = prostm.FocalPath([[0.05, 0.05], [0.07, 0.05]], 1.0, patch=1)
     with pytest.raises(ValueError, match="at most 8"):
         prostm.Plan([path] * 9)
@@ -238,12 +238,12 @@ def test_plans_and_their_uses(field):
     ({"full_scale_pressure": 1.0, "sample_rate": 10.0}, "sample_rate"),
     ({"full_scale_pressure": 1.0, "focii": 3}, "did you mean 'foci'"),
 ])
-def test_emitters_that_cannot_be(settings, words):
+def test_invalid_emitters(settings, words):
     with pytest.raises(ValueError, match=words):
         prostm.PathEmitter(**settings)
 
 
-def test_samples_that_cannot_be(field):
+def test_invalid_samples(field):
     emitter = prostm.PathEmitter(full_scale_pressure=1.0)
     for first, samples in [(-1, 40), (0, 0), (0, -4), (0, 10**9)]:
         with pytest.raises(ValueError):

@@ -1,4 +1,4 @@
-"""The module and the command line are the same planner: equal fields give equal numbers, to the bit."""
+"""The module and the command line have the same planner: equal fields give bitwise equal numbers."""
 
 import json
 
@@ -12,7 +12,7 @@ def assert_same_plan(result, document):
     """Checks that a PlanResult and a plan file have the same paths, metrics and counts."""
     text = prostm.plan_to_json(result.plan, result.target, result.settings)
     assert json.loads(text)["paths"] == document["paths"] != []
-    # Python has the written numbers, except for the conversion from millimetres to metres, which can round
+    # Python has the numbers as written, except for the conversion from millimetres to metres, which may round
     for path, saved in zip(result.paths, document["paths"], strict=True):
         np.testing.assert_allclose(path.points, np.array(saved["points_mm"]) / 1000, rtol=3e-16, atol=0)
         np.testing.assert_array_equal(path.pressure, saved["pressure"])
@@ -26,7 +26,7 @@ def assert_same_plan(result, document):
 
 
 @pytest.mark.parametrize("preset", ["paper", "paper-valid", "best", "fast"])
-def test_an_array_is_planned_as_its_file_is(program, tmp_path, pressure, preset):
+def test_an_array_is_planned_like_its_file(program, tmp_path, pressure, preset):
     np.save(tmp_path / "field.npy", pressure)
     program("plan", tmp_path / "field.npy", "--cell-mm", 5, "--preset", preset, "--json", tmp_path / "plan.json")
     document = json.loads((tmp_path / "plan.json").read_text())
@@ -35,7 +35,7 @@ def test_an_array_is_planned_as_its_file_is(program, tmp_path, pressure, preset)
     assert_same_plan(prostm.plan(tmp_path / "field.npy", preset, cell_mm=5), document)
 
 
-def test_the_controls_are_those_of_the_command_line(program, tmp_path, pressure, field):
+def test_the_controls_match_the_command_line(program, tmp_path, pressure, field):
     np.save(tmp_path / "field.npy", pressure)
     program("plan", tmp_path / "field.npy", "--cell-mm", 5, "--json", tmp_path / "plan.json")
     saved = json.loads((tmp_path / "plan.json").read_text())["controls"]
@@ -45,7 +45,7 @@ def test_the_controls_are_those_of_the_command_line(program, tmp_path, pressure,
     assert len(prostm.controls(field, other=prostm.plan(field).plan)) == 4
 
 
-def test_settings_are_those_of_a_settings_file(program, tmp_path, pressure):
+def test_settings_match_a_settings_file(program, tmp_path, pressure):
     np.save(tmp_path / "field.npy", pressure)
     (tmp_path / "s.toml").write_text("[plan]\npaths = 3\ndraw_rate = 70\ngain_exponent = 0.5\nsigma = 6e-3\nseed = 7\n")
     program("plan", tmp_path / "field.npy", "--cell-mm", 5, "--settings", tmp_path / "s.toml", "--json",
@@ -89,7 +89,7 @@ def test_plans_written_here_and_there_are_the_same_file(program, tmp_path, field
     for document in (here, there):
         del document["stage_us"], document["settings"], document["prostm"]
     del there["controls"], there["warnings"]
-    # a plan made here has no emission, which limits the power and decides what is played
+    # a plan made here has no emission settings, which limit the power and determine the played plan
     assert len(there.pop("played")) == len(here["paths"])
     power = there.pop("power")
     assert power["share_of_full_scale"] == prostm.even_share(len(here["paths"]), power["limit"])
@@ -100,7 +100,7 @@ def test_plans_written_here_and_there_are_the_same_file(program, tmp_path, field
         for a, b in zip(file.plan.paths, result.paths, strict=True):
             np.testing.assert_array_equal(a.points, b.points)
             np.testing.assert_array_equal(a.pressure, b.pressure)
-            # the file is in mm: not every double in m is an exact thousandth
+            # the file is in mm: not every double in m is exactly a thousandth
             assert abs(a.length - b.length) <= 1e-15 * b.length
         np.testing.assert_array_equal(file.raster.skin, field.skin)
     text = prostm.plan_to_json(result.plan, field, result.settings, result.stats, result.metrics(),

@@ -1,4 +1,4 @@
-"""The planner's model of what is felt, in double precision, and plans in step that are made by it."""
+"""The planner's model of the felt field, in double precision, and plans in step that use it."""
 
 import pickle
 
@@ -8,7 +8,7 @@ import pytest
 
 from conftest import ROOT, blobs
 
-SIGMA = 4.3e-3  # of an array's focus
+SIGMA = 4.3e-3  # focus of an array
 
 
 @pytest.fixture(scope="module")
@@ -22,14 +22,14 @@ def plan(field):
 
 
 def with_path(plan, k, points=None, pressure=None):
-    """The plan with another path k."""
+    """Returns the plan with path k replaced."""
     paths = plan.paths
     points = paths[k].points if points is None else points
     paths[k] = prostm.FocalPath(points, paths[k].pressure if pressure is None else pressure, paths[k].speed)
     return prostm.Plan(paths, loop=plan.loop)
 
 
-def test_the_arrays_have_the_shapes_that_are_said(field, plan):
+def test_arrays_have_the_documented_shapes(field, plan):
     felt = prostm.felt_plan(plan, field, SIGMA)
     blocks, skins = len(felt.area), prostm.felt_skins()
     assert felt.positions.shape == (blocks, 2) and felt.pressure.shape == (blocks,)
@@ -44,19 +44,19 @@ def test_the_arrays_have_the_shapes_that_are_said(field, plan):
     np.testing.assert_array_equal(arrays[0], areas)
 
 
-def test_the_blocks_are_those_of_the_target(field, plan):
+def test_the_blocks_match_the_target(field, plan):
     felt = prostm.felt_plan(plan, field, SIGMA)
     assert felt.area.sum() == pytest.approx(1.0, rel=1e-12) and (felt.area > 0).all()
     p = field.pressure[field.skin]
-    # the mean over the skin, and its middle
+    # the mean over the skin, and its centre
     assert felt.area @ felt.pressure == pytest.approx(p.mean() / p.max(), rel=1e-6)
     rows, cols = np.nonzero(field.skin)
     middle = field.origin + field.cell * np.array([cols.mean(), rows.mean()])
     np.testing.assert_allclose(felt.area @ felt.positions, middle, rtol=1e-9)
 
 
-def test_the_lack_is_that_of_the_percept(field, plan):
-    """Part of (W3) from the arrays themselves: 1 - skill_0 of each skin, which is less than the lack by 1 - skill_8."""
+def test_the_lack_matches_the_percept(field, plan):
+    """Part of (W3) from the arrays themselves: 1 - skill_0 of each skin, which is below the lack by 1 - skill_8."""
     felt = prostm.felt_plan(plan, field, SIGMA)
     a, p = felt.area, felt.pressure
     lack_0 = []
@@ -64,7 +64,7 @@ def test_the_lack_is_that_of_the_percept(field, plan):
         gain = (a @ (p * r)) / (a @ (r * r))
         lack_0.append((a @ (p - gain * r) ** 2) / (a @ (p - a @ p) ** 2))
     assert 0.3 * np.mean(lack_0) < felt.lack < np.mean(lack_0) * 1.3
-    # a percept has the size of its pressures, and the lack does not know it
+    # a percept scales with its pressures, and the lack does not depend on the scale
     doubled = prostm.Plan([prostm.FocalPath(path.points, 2 * path.pressure, path.speed) for path in plan.paths],
                           loop=plan.loop)
     twice = prostm.felt_plan(doubled, field, SIGMA)
@@ -72,7 +72,7 @@ def test_the_lack_is_that_of_the_percept(field, plan):
     np.testing.assert_allclose(twice.percept, 2 * felt.percept, rtol=1e-9)
 
 
-def test_the_gradient_is_that_of_the_lack(field, plan):
+def test_the_gradient_matches_the_lack(field, plan):
     felt = prostm.felt_plan(plan, field, SIGMA)
     largest = prostm.max_pressure(field)
 
@@ -102,9 +102,9 @@ def test_the_lack_falls_with_the_weight_and_again_with_the_points(field):
     assert lacks[2] < 0.65 * lacks[0]
 
 
-def test_plans_by_what_is_felt_are_in_step(field, plan):
+def test_felt_plans_are_in_step(field, plan):
     for own in (plan, prostm.plan(field, felt_weight=0.9, felt_points=True, sigma=SIGMA).plan):
-        assert 0.01 <= own.loop <= 0.02  # 1 / draw_rate at most
+        assert 0.01 <= own.loop <= 0.02  # at most 1 / draw_rate
         for path in own.paths:
             laps = own.loop / path.period
             assert laps == pytest.approx(round(laps), abs=1e-9) and path.speed <= 7 * (1 + 1e-9)
@@ -134,7 +134,7 @@ def test_skins_are_values(field, plan):
             prostm.SkinSettings(**wrong)
 
 
-def test_errors_in_words(field, plan):
+def test_errors_are_sentences(field, plan):
     for words, wrong in [
         ("not in step.*felt_weight", prostm.Plan(plan.paths)),
         ("no path", prostm.Plan()),

@@ -17,7 +17,7 @@ import pytest
 from conftest import ROOT, blobs
 
 
-def test_views_are_read_only_and_keep_what_they_show(field):
+def test_views_are_read_only_and_keep_their_data(field):
     points = prostm.plan(field).paths[0].points
     height, skin = prostm.TargetField(blobs(), cell_mm=5, height=np.ones((24, 30))).height, field.skin
     before = points.copy(), height.copy()
@@ -34,7 +34,7 @@ def test_views_are_read_only_and_keep_what_they_show(field):
     assert np.shares_memory(path.points, path.points)
 
 
-def test_the_array_that_a_field_was_made_from_may_change(pressure):
+def test_the_source_array_of_a_field_may_change(pressure):
     field = prostm.TargetField(pressure, 5e-3)
     kept = field.pressure
     pressure[:] = 7
@@ -62,7 +62,7 @@ def test_pressure_is_nan_where_there_is_no_skin(pressure):
     np.testing.assert_array_equal(field.pressure, pressure)
     np.testing.assert_array_equal(np.isnan(field.pressure), ~field.skin)
     np.testing.assert_array_equal(prostm.TargetField(field.pressure, 5e-3).pressure, pressure)
-    assert np.isfinite(field.height).all()  # continued off the skin
+    assert np.isfinite(field.height).all()  # extrapolated off the skin
     with pytest.raises(ValueError):
         field.pressure[0, 5] = 7
     assert prostm.max_pressure(field) == np.nanmax(pressure)
@@ -71,7 +71,7 @@ def test_pressure_is_nan_where_there_is_no_skin(pressure):
     assert prostm.max_pressure(prostm.TargetFrame([])) == 0
 
 
-def test_whole_numbers_and_truth_values_are_pressures():
+def test_integers_and_booleans_are_valid_pressures():
     for dtype in (bool, np.uint8, np.int16, np.int64):
         ones = np.ones((6, 6), dtype)
         assert prostm.TargetField(ones, 5e-3).pressure.sum() == 36
@@ -88,9 +88,9 @@ def test_a_field_without_pressure_gives_a_plan_without_paths():
 
 
 def test_settings_follow_the_header():
-    """Names and order are those of PlanSettings::visit, for any number of settings."""
+    """Names and order match PlanSettings::visit, for any number of settings."""
     source = (ROOT / "src" / "prostm" / "plan" / "plan_settings.cpp").read_text()
-    fitted, others = source.split("void list(")  # list() ends with list_fit(), which stands before it
+    fitted, others = source.split("void list(")  # list() ends with list_fit(), which precedes it
     listed = [name for part in (others, fitted) for name in re.findall(r'v\.field\(\{(?:\.name = )?"(\w+)"', part)]
     settings = prostm.PlanSettings()
     assert list(settings.as_dict()) == listed and len(listed) >= 16
@@ -147,13 +147,13 @@ def test_pickles_are_the_same_to_the_bit(field):
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(weighted)).weight, weighted.weight)
 
 
-def test_weights_say_where_errors_count():
+def test_weights_apply_to_errors():
     pressure = np.zeros((24, 40))
     pressure[10:14, 6:10] = pressure[10:14, 30:34] = 1.0
     pressure[0, 0] = np.nan
     weight = np.ones((24, 40))
     weight[:, 20:] = 4
-    weight[0, 0] = np.nan  # no skin, so it does not count
+    weight[0, 0] = np.nan  # no skin, so it is ignored
     field = prostm.TargetField(pressure, cell_mm=4, weight=weight)
     assert field.weight[0, 0] == 0 and field.weight[5, 5] == 1 and field.weight[5, 25] == 4
     assert not field.weight.flags.writeable and field.weight.base is not None
@@ -163,7 +163,7 @@ def test_weights_say_where_errors_count():
     np.testing.assert_array_equal(prostm.field_from_json(prostm.field_to_json(field)).weight, field.weight)
 
 
-def test_a_planner_gives_the_same_plan_again_once_it_has_forgotten(field):
+def test_a_reset_planner_repeats_its_plan(field):
     planner = prostm.Planner()
     first = planner.plan(field)
     planner.reset()
@@ -174,7 +174,7 @@ def test_a_planner_gives_the_same_plan_again_once_it_has_forgotten(field):
 
 
 def test_threads_may_share_planner_and_field(field):
-    """The interpreter's lock is released, and each plan is still complete."""
+    """The interpreter's lock is released, and each plan is complete."""
     planner = prostm.Planner(preset="paper-valid", clusters=20, refine_iterations=20)
     expected = planner.plan(field).paths[0].points.copy()
     wrong, done = [], []
@@ -194,7 +194,7 @@ def test_threads_may_share_planner_and_field(field):
 
 
 def longest_pause_beside(work):
-    """Returns the longest pause of this thread while another runs work(), as a share of the duration of work()."""
+    """Returns the longest pause of this thread while another runs work(), as a fraction of the duration of work()."""
     times = []
 
     def timed():
@@ -213,14 +213,14 @@ def longest_pause_beside(work):
     return longest / (times[1] - times[0])
 
 
-def test_python_runs_on_while_a_plan_is_made_and_scored():
-    """A call that kept the lock would be one pause, as long as the call."""
+def test_python_keeps_running_while_a_plan_is_made_and_scored():
+    """A call that held the lock would be one pause as long as the call."""
     planner = prostm.Planner(max_cells=160_000, preset="paper")
     field = prostm.TargetField(np.random.default_rng(1).random((400, 400)), 1e-4)
     plan = planner.plan(field).plan
     assert longest_pause_beside(lambda: planner.plan(field)) < 0.6
     assert longest_pause_beside(lambda: prostm.score_plan(field, plan)) < 0.6
-    assert longest_pause_beside(lambda: pow(7, 3_000_000)) > 0.6  # keeps the lock
+    assert longest_pause_beside(lambda: pow(7, 3_000_000)) > 0.6  # holds the lock
 
 
 def resident_pages():
@@ -228,7 +228,7 @@ def resident_pages():
         return int(file.read().split()[1])
 
 
-def test_ten_thousand_plans_take_no_memory(pressure):
+def test_ten_thousand_plans_leak_no_memory(pressure):
     planner = prostm.Planner(preset="fast")
 
     def once():
@@ -243,11 +243,11 @@ def test_ten_thousand_plans_take_no_memory(pressure):
     before = resident_pages()
     for _ in range(10_000):
         once()
-    # a plan is 13 kB, a field 12 kB: a leak of one in a hundred would be 2.5 MB
+    # a plan is 13 kB, a field 12 kB: leaking one in a hundred would take 2.5 MB
     assert (resident_pages() - before) * os.sysconf("SC_PAGE_SIZE") < 1 << 20
 
 
-def test_other_calls_take_no_memory(field, tmp_path):
+def test_other_calls_leak_no_memory(field, tmp_path):
     plan = prostm.plan(field).plan
     emitter = prostm.PathEmitter(full_scale_pressure=1.0)
     sample = 0
@@ -276,7 +276,7 @@ def public_names():
     return [(name, getattr(prostm, name)) for name in prostm.__all__]
 
 
-def test_every_public_name_is_explained():
+def test_every_public_name_is_documented():
     for name, value in public_names():
         if isinstance(value, int):
             continue
@@ -288,7 +288,7 @@ def test_every_public_name_is_explained():
     assert "_prostm." not in text and "Planner" in text and "(rows, cols)" in text
 
 
-def test_the_types_name_what_there_is():
+def test_the_type_stubs_match_the_module():
     stub = (ROOT / "python" / "prostm" / "__init__.pyi").read_text()
     declared = set(re.findall(r"^(?:def|class) (\w+)", stub, flags=re.M)) - {"_Settings"}
     declared |= set(re.findall(r"^(k\w+):", stub, flags=re.M))
@@ -305,7 +305,7 @@ def test_the_types_name_what_there_is():
             assert hasattr(value, member) or member in dir(value()), f"{name}.{member} is declared and not there"
 
 
-def test_a_reset_planner_plans_as_a_new_one():
+def test_a_reset_planner_plans_like_a_new_one():
     pressure = np.zeros((20, 20))
     pressure[5:12, 6:15] = 1.0
     target = prostm.TargetField(pressure, cell_mm=4)

@@ -1,4 +1,4 @@
-"""Recordings: frames by number, targets and plans as h5py reads them, and the reconstruction of a run."""
+"""Recordings: frames by number, targets and plans as read by h5py, and the reconstruction of a run."""
 
 import json
 import pickle
@@ -26,7 +26,7 @@ def planned_frame(path):
 
 
 def recorded_target(file, frame):
-    """Returns the pressures, heights and origin of the first patch of a frame, as h5py reads them."""
+    """Returns the pressures, heights and origin of the first patch of a frame, as read by h5py."""
     patch = file["frame/first_patch"][frame]
     rows, cols, at = (file["target"][name][patch] for name in ("rows", "cols", "offset"))
     cells = slice(at, at + rows * cols)
@@ -68,7 +68,7 @@ def test_only_files_have_frames(field, tmp_path):
             prostm.Planner().plan(field, **options)
 
 
-def test_targets_and_plans_are_those_of_the_file(run):
+def test_targets_and_plans_match_the_file(run):
     recording = prostm.Recording(run)
     with h5py.File(run) as file:
         np.testing.assert_array_equal(recording.time, file["frame/time"][:])
@@ -100,7 +100,7 @@ def test_targets_and_plans_are_those_of_the_file(run):
                 call(frame)
 
 
-def test_the_reconstruction_is_that_of_the_run(run):
+def test_the_reconstruction_matches_the_run(run):
     frame = planned_frame(run)
     recording = prostm.Recording(run)
     result = recording.plan(frame)
@@ -110,7 +110,7 @@ def test_the_reconstruction_is_that_of_the_run(run):
         assert np.isnan(file["plan/sigma"][frame, 1])
         assert json.loads(file.attrs["summary"])["full_scale_pressure_pa"] == full_scale
         assert np.isnan(file["plan/full_scale_pressure"][:][file["plan/paths"][:] < 0]).all()
-    assert 4e-3 < sigma < 12e-3 and sigma != recording.settings["plan"]["sigma"]  # the width of the array's focal point
+    assert 4e-3 < sigma < 12e-3 and sigma != recording.settings["plan"]["sigma"]  # the width of the array's focus
     assert result.emission.full_scale_pressure == full_scale
     rendered = result.quasi_static_field()
     assert rendered.shape == target.shape
@@ -118,7 +118,7 @@ def test_the_reconstruction_is_that_of_the_run(run):
     np.testing.assert_allclose(rendered, planned, atol=0.1 * prostm.max_pressure(target))
     metrics = prostm.score_field(target, rendered)
     assert metrics.rmse == pytest.approx(result.metrics().rmse, rel=1e-9) and metrics.correlation > 0.8
-    # another full scale is played differently
+    # with another full scale the played plan differs
     weak = prostm.EmitSettings(full_scale_pressure=0.2 * full_scale)
     assert result.quasi_static_field(emission=weak).max() < rendered.max()
     positions, intensities = prostm.emit(result, seconds=0.1)
@@ -172,7 +172,7 @@ def test_loops_and_phases(run, tmp_path):
     assert prostm.Recording(run).plan(frame).plan.loop == 0 and prostm.Recording(path).plan(frame).plan.loop == 0.02
     with h5py.File(path, "r+") as file:
         file["plan/loop"][frame] = -1.0
-    with pytest.raises(prostm.InputError, match="is broken"):
+    with pytest.raises(prostm.InputError, match="is damaged"):
         prostm.Recording(path).plan(frame)
     # recordings of earlier versions have neither
     with h5py.File(path, "r+") as file:
@@ -181,16 +181,16 @@ def test_loops_and_phases(run, tmp_path):
 
 
 @pytest.mark.parametrize("mode", ["r", "r+"])
-def test_a_file_that_is_open_in_h5py_is_read(run, mode):
+def test_a_file_open_in_h5py_is_read(run, mode):
     frame = planned_frame(run)
     with h5py.File(run, mode) as file:
         np.testing.assert_array_equal(prostm.read_field(run, frame=frame).pressure, recorded_target(file, frame)[0])
         assert prostm.Recording(run).frames == len(file["frame/time"])
-        # ours is closed again, and h5py's is not
+        # our handle is closed again, and h5py's is not
         np.testing.assert_array_equal(recorded_target(file, frame)[0], recorded_target(file, frame)[0])
 
 
-def test_a_file_that_is_open_with_another_close_degree_is_read(run):
+def test_a_file_open_with_another_close_degree_is_read(run):
     access = h5py.h5p.create(h5py.h5p.FILE_ACCESS)
     access.set_fclose_degree(h5py.h5f.CLOSE_STRONG)
     file = h5py.File(h5py.h5f.open(bytes(run), h5py.h5f.ACC_RDONLY, access))
@@ -199,7 +199,7 @@ def test_a_file_that_is_open_with_another_close_degree_is_read(run):
     file.close()
 
 
-def test_a_file_that_another_program_writes_is_named_so(run):
+def test_a_file_being_written_is_reported_as_such(run):
     code = "import h5py, sys; file = h5py.File(sys.argv[1], 'r+'); print(flush=True); sys.stdin.read()"
     writer = subprocess.Popen([sys.executable, "-c", code, run], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                               text=True)
@@ -213,8 +213,8 @@ def test_a_file_that_another_program_writes_is_named_so(run):
     assert prostm.Recording(run).frames > 0
 
 
-def test_threads_read_beside_h5py(run):
-    """HDF5 takes one thread at a time; h5py lets go of the interpreter's lock while it reads."""
+def test_threads_read_alongside_h5py(run):
+    """HDF5 allows one thread at a time; h5py releases the interpreter's lock while it reads."""
     frame, wrong, done = planned_frame(run), [], []
     recording = prostm.Recording(run)
     expected = recording.target(frame).patches[0].pressure
@@ -237,7 +237,7 @@ def test_threads_read_beside_h5py(run):
     assert len(done) == 4 and not wrong
 
 
-def test_files_that_are_no_recording(tmp_path):
+def test_files_that_are_not_recordings(tmp_path):
     (tmp_path / "text.h5").write_text("hello")
     with h5py.File(tmp_path / "other.h5", "w") as file:
         file["x"] = 1
@@ -246,7 +246,7 @@ def test_files_that_are_no_recording(tmp_path):
             prostm.Recording(tmp_path / name)
 
 
-def test_settings_of_another_version_are_named_so(run, tmp_path):
+def test_settings_of_another_version_are_reported_as_such(run, tmp_path):
     copy = tmp_path / "copy.h5"
     copy.write_bytes(run.read_bytes())
     frame = planned_frame(run)
@@ -262,7 +262,7 @@ def test_settings_of_another_version_are_named_so(run, tmp_path):
         prostm.Recording(copy)
 
 
-def test_plans_of_an_earlier_version_are_named_so(run, tmp_path):
+def test_plans_of_an_earlier_version_are_reported_as_such(run, tmp_path):
     earlier = tmp_path / "earlier.h5"
     earlier.write_bytes(run.read_bytes())
     with h5py.File(earlier, "r+") as file:
@@ -273,7 +273,7 @@ def test_plans_of_an_earlier_version_are_named_so(run, tmp_path):
         recording.plan(planned_frame(run))
 
 
-def test_the_gate_of_a_frame_says_what_the_file_holds(run, tmp_path):
+def test_the_gate_of_a_frame_matches_the_file(run, tmp_path):
     recording, last = prostm.Recording(run), planned_frame(run)
     result = recording.gate(last)
     with h5py.File(run) as file:
@@ -301,6 +301,6 @@ def test_a_recording_without_a_gate_has_none(run, program, tmp_path):
     with h5py.File(earlier, "r+") as file:
         del file["gate"]
     assert prostm.Recording(earlier).gate(0) is None
-    # still air is no stimulus
+    # still air has no stimulus
     program("run", "--scene", "still-air", "--stepped", "--seconds", 0.2, "--record", tmp_path / "air.h5")
     assert prostm.Recording(tmp_path / "air.h5").gate(0) is None

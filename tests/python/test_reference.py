@@ -39,7 +39,7 @@ def test_quasi_static_field_is_eq_1(field, preset, sigma, gain):
 
 @pytest.mark.parametrize("preset", ["paper", "best"])
 def test_every_path_has_the_gain_of_its_period(field, preset):
-    ample = 1e5 * prostm.max_pressure(field)  # full output that limits no pressure
+    ample = 1e5 * prostm.max_pressure(field)  # a full output that limits no pressure
     settings = prostm.PlanSettings(preset=preset, gain_exponent=-0.7, draw_rate=60, full_scale_pressure=ample)
     result = prostm.plan(field, settings=settings)
     constant = prostm.plan(field, preset, draw_rate=60, full_scale_pressure=ample)
@@ -58,7 +58,7 @@ def test_every_path_has_the_gain_of_its_period(field, preset):
         assert one.metrics.rmse == pytest.approx(two.metrics.rmse, rel=1e-9)
 
 
-def test_the_gain_of_a_path_from_the_skin(field):
+def test_the_gain_of_a_path_derived_from_the_skin(field):
     ample = 1e5 * prostm.max_pressure(field)
     result = prostm.plan(field, gain_from_skin=True, full_scale_pressure=ample)
     constant = prostm.plan(field, full_scale_pressure=ample)
@@ -75,7 +75,7 @@ def test_the_gain_of_a_path_from_the_skin(field):
                                prostm.quasi_static_field(constant.plan, field), rtol=1e-9, atol=1e-12)
 
 
-def test_metrics_are_those_of_eq_1(field):
+def test_metrics_match_eq_1(field):
     result = prostm.plan(field, "paper")
     p, r = field.pressure[field.skin], eq1(result.paths, field)[field.skin]
     p, r = p / p.max(), r / p.max()
@@ -92,7 +92,7 @@ def test_metrics_are_those_of_eq_1(field):
 
 
 def second_lap(field, plan, full_scale):
-    """Returns the emitter's second lap of each path, as paths of many points."""
+    """Returns the emitter's second lap on each path, as paths of many points."""
     positions, intensities = prostm.emit(plan, field, 0.1, full_scale)
     paths = []
     for path in plan.paths:
@@ -106,7 +106,7 @@ def second_lap(field, plan, full_scale):
 
 
 @pytest.mark.parametrize("preset", ["paper-valid", "best"])
-def test_the_quality_of_a_result_is_that_of_what_is_played(preset):
+def test_the_quality_of_a_result_is_that_of_the_played_plan(preset):
     # contacts so thin that the pressures along a path change faster than an intensity may
     x = 2e-3 * np.arange(50)
     thin = [np.exp(-((x - a) ** 2)[None] / 2e-5 - ((x - b) ** 2)[:, None] / 2e-5)
@@ -120,7 +120,7 @@ def test_the_quality_of_a_result_is_that_of_what_is_played(preset):
         ours = result.quasi_static_field(emission=settings)
         metrics = result.metrics(emission=settings)
         assert prostm.score_field(field, ours, metrics.coverage).as_dict() == metrics.as_dict()
-        # cells equally near to two paths may belong to either
+        # cells equally close to two paths may belong to either
         assert np.quantile(np.abs(ours - played), 0.99) < 0.02 * prostm.max_pressure(field)
         assert prostm.score_field(field, played).rmse == pytest.approx(metrics.rmse, rel=0.05)
     # the default full scale is the gain times the largest pressure
@@ -128,7 +128,7 @@ def test_the_quality_of_a_result_is_that_of_what_is_played(preset):
     assert result.metrics().as_dict() == result.metrics(emission=settings).as_dict()
 
 
-def test_what_is_felt_of_a_plan_needs_an_array(field):
+def test_the_felt_field_of_a_plan_needs_an_array(field):
     result = prostm.plan(field, "best")
     assert np.isnan(result.metrics().felt_skill) and "felt_skill" not in result.metrics().as_dict()
     felt = result.metrics(array="usx")
@@ -146,7 +146,7 @@ def test_a_plan_beats_its_controls(field):
     assert all(mine.skill_0 > c.metrics.skill_0 for c in table)
 
 
-def test_a_path_of_ones_own(field):
+def test_a_custom_path(field):
     angle = np.linspace(0, 2 * np.pi, 32, endpoint=False)
     points = [0.07, 0.06] + 0.02 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     path = prostm.FocalPath(points, 1.4)
@@ -210,7 +210,7 @@ def test_emission_follows_the_path_at_its_speed(field):
     assert intensities[0, 0] <= 1 / 40 and intensities.min() >= 0 and 0.5 < intensities.max() <= 1
     assert np.abs(np.diff(intensities, axis=0)).max() <= 1 / 40 + 1e-6
 
-    # once it sounds: 7 m/s, with a whole number of samples per lap, on the plane 200 mm above the array
+    # once active: 7 m/s, with an integer number of samples per lap, in the plane 200 mm above the array
     p = positions[400:, 0].astype(float)
     lap = int(np.ceil(result.paths[0].length / (7 / 40e3)))
     np.testing.assert_allclose(p[lap:], p[:-lap], atol=1e-6)
@@ -249,7 +249,7 @@ def test_an_emitter_step_by_step(field):
     assert report.plan == 12 and report.first_sample >= 0 and report.redrawn_sample > 0
     assert emitter.next_take_over() is None
 
-    # the block size makes no difference
+    # the block size does not matter
     whole = prostm.PathEmitter(full_scale_pressure=1.4, foci=3)
     whole.submit(lifted)
     positions, intensities_of_whole = whole.fill(0, 2000)

@@ -14,7 +14,7 @@ TOOL = ROOT / "tools" / "same_results.py"
 
 @pytest.fixture
 def build(tmp_path):
-    """Returns a function that makes a build folder whose program adds options to the given ones."""
+    """Returns a function that creates a build folder whose program adds options to the given ones."""
     program = Path(os.environ.get("PROSTM", ROOT / "build" / "release" / "prostm"))
 
     def make(name, *options):
@@ -29,20 +29,20 @@ def build(tmp_path):
 
 
 def compare(tmp_path, *builds, seconds=0.8):
-    """Returns the exit status, the lines and the errors of a comparison of the scenes alone, on plain code."""
+    """Returns the exit status, the lines and the errors of a comparison of the scenes only, with plain code."""
     command = (TOOL, *builds, "--seconds", seconds, "--vectors", "none", "--hands", tmp_path)
     done = subprocess.run([str(part) for part in command], text=True, capture_output=True, timeout=300)
     return done.returncode, done.stdout.splitlines(), done.stderr
 
 
-def test_a_build_is_the_same_as_itself(build, tmp_path):
+def test_a_build_equals_itself(build, tmp_path):
     status, lines, _ = compare(tmp_path, build("one"), build("other"))
     assert status == 0, lines
     assert [line.split()[-3:] for line in lines[1:-1]] == [["same"] * 3] * 2
     assert lines[-1] == "all the same to the bit"
 
 
-def test_finds_plans_and_samples_that_differ(build, tmp_path):
+def test_differing_plans_and_samples_are_found(build, tmp_path):
     status, lines, _ = compare(tmp_path, build("one"), build("other", "--paths 3"))
     assert status == 1
     words = [line.split() for line in lines[1:-1]]
@@ -57,7 +57,7 @@ def test_a_run_without_a_plan_compares_nothing(build, tmp_path):
     assert "nothing is compared" in error
 
 
-def test_says_what_a_build_lacks(tmp_path):
+def test_missing_parts_of_a_build_are_reported(tmp_path):
     status, _, error = compare(tmp_path, tmp_path, tmp_path)
     assert status == 2
     assert "has no prostm" in error

@@ -1,4 +1,4 @@
-"""`import prostm` where the compiled part is missing, or is another interpreter's."""
+"""`import prostm` if the compiled part is missing, or belongs to another interpreter."""
 
 import shutil
 import subprocess
@@ -12,7 +12,7 @@ from conftest import ROOT
 
 
 def import_from(folder):
-    """Returns the last line of the error of `import prostm`, with this folder first on the path."""
+    """Returns the last line of the error of `import prostm` with this folder first on the path."""
     code = "import sys; sys.path.insert(0, sys.argv[1]); import prostm"
     done = subprocess.run([sys.executable, "-c", code, str(folder)], capture_output=True, text=True)
     assert done.returncode == 1

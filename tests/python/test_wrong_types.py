@@ -1,4 +1,4 @@
-"""A value of a wrong type is answered with one sentence: where, what, and what would be right."""
+"""A value of a wrong type produces one sentence: where, what, and what would be right."""
 
 import inspect
 import re
@@ -74,8 +74,8 @@ def takes_an_argument(call):
     return parameters is None or parameters[1].removeprefix("self: ").count(": ") > 0
 
 
-def test_no_function_answers_with_a_list_of_signatures(field):
-    """Calls every function, constructor and method with an object that nothing takes."""
+def test_no_function_responds_with_a_list_of_signatures(field):
+    """Calls every function, constructor and method with an object that none accepts."""
     class Stranger:
         def __bool__(self):
             raise TypeError("a stranger is neither true nor false")
@@ -97,7 +97,7 @@ def test_no_function_answers_with_a_list_of_signatures(field):
     assert called > 30
 
 
-def test_wrappers_leave_results_and_other_errors_alone(field, plan):
+def test_wrappers_pass_results_and_other_errors_through(field, plan):
     assert prostm.score_plan.__name__ == "score_plan" and prostm.Planner.plan.__qualname__ == "Planner.plan"
     assert prostm.score_plan(target=field, plan=plan).as_dict() == prostm.score_plan(field, plan).as_dict()
     with pytest.raises(TypeError, match="PlanSettings.paths must be a whole number, not 2.5"):

@@ -37,20 +37,20 @@ bool has(const std::string& text, const std::string& piece) {
   return text.find(piece) != text.npos;
 }
 
-TEST(Page, EscapesWhatHtmlWouldRead) {
+TEST(Page, EscapesCharactersThatHtmlInterprets) {
   EXPECT_EQ(escaped("a<b>&\"c'"), "a&lt;b&gt;&amp;&quot;c&#39;");
   const std::string page = html_of(Json::array({text_block("1 < 2 {/values/word}")}));
   EXPECT_TRUE(has(page, "1 &lt; 2 <span data-from=\"a-part.json#/values/word\">&lt;b&gt;</span>"));
   EXPECT_TRUE(has(page, ">A &amp; B</h2>"));
 }
 
-TEST(Page, RoundsWithoutTheSignOfAZero) {
+TEST(Page, RoundsWithoutANegativeZero) {
   EXPECT_EQ(rounded(-0.0004, 3), "0.000");
   EXPECT_EQ(rounded(-0.0006, 3), "-0.001");
   EXPECT_EQ(rounded(2.5e6, 0), "2500000");
 }
 
-TEST(Page, SaysOfEachNumberWhereItIs) {
+TEST(Page, RecordsThePositionOfEachNumber) {
   const std::string page = html_of(Json::array(
       {text_block("{/values/n} and {/values/x:2}"),
        table_block("T", {{"a", "A", "mm", 1}}, Json::array({{{"a", 1.26}}, {{"a", nullptr}}}))}));
@@ -61,14 +61,14 @@ TEST(Page, SaysOfEachNumberWhereItIs) {
   EXPECT_TRUE(has(page, "#/blocks/1/table/rows/1/a\" class=\"n\">–</td>"));
 }
 
-TEST(Page, ARowMayHaveItsOwnDigitsAndStandApart) {
+TEST(Page, ARowMayHaveItsOwnDigitsAndBeMarked) {
   const std::string page = html_of(Json::array({table_block(
       "T", {{"a", "A"}}, Json::array({{{"a", 1.0}, {"digits", 0}, {"marked", true}}}))}));
   EXPECT_TRUE(has(page, "<tr class=\"marked\">"));
   EXPECT_TRUE(has(page, "data-digits=\"0\" class=\"n\">1</td>"));
 }
 
-TEST(Page, RefusesPointersThatLeadNowhere) {
+TEST(Page, RejectsPointersWithoutATarget) {
   EXPECT_THROW(html_of(Json::array({text_block("{/values/none}")})), std::invalid_argument);
   EXPECT_THROW(html_of(Json::array({text_block("{/values")})), std::invalid_argument);
   EXPECT_THROW(html_of(Json::array({text_block("{/values}")})), std::invalid_argument);
@@ -88,7 +88,7 @@ TEST(Page, PicturesOfOnePageShareNoIdentifiers) {
   EXPECT_FALSE(has(page, "<?xml"));
 }
 
-TEST(Page, OutlinesAreCutToHundredths) {
+TEST(Page, OutlinesAreRoundedToHundredths) {
   EXPECT_TRUE(has(detail::inline_svg(kPicture, "p", ""), "d=\"M 1.23 -0.5 L 12 3.1\""));
   EXPECT_THROW(detail::inline_svg("<p>", "p", ""), std::invalid_argument);
   EXPECT_THROW(detail::inline_svg("<svg>", "p", ""), std::invalid_argument);
@@ -96,17 +96,17 @@ TEST(Page, OutlinesAreCutToHundredths) {
 
 class Folder : public testing::Test {
  protected:
-  // each case is a process of its own, and they run at the same time
+  // each case is a separate process, and they run at the same time
   std::string name_ = testing::TempDir() + "report_parts_" +
                       testing::UnitTest::GetInstance()->current_test_info()->name();
   void SetUp() override { std::filesystem::remove_all(name_); }
 };
 
-TEST_F(Folder, APartIsReadWhereItWasMadeForTheSame) {
+TEST_F(Folder, APartIsReadIfItsInputsMatch) {
   const PartFolder folder(name_);
   Part part = part_with(Json::array({figure_block("f.svg", "", "")}));
   folder.write(part);
-  EXPECT_FALSE(folder.read("a-part", {{"seed", 1}})) << "its picture is not there";
+  EXPECT_FALSE(folder.read("a-part", {{"seed", 1}})) << "its picture is missing";
   write_file(folder.path("f.svg"), kPicture);
   ASSERT_TRUE(folder.read("a-part", {{"seed", 1}}));
   EXPECT_EQ(folder.read("a-part", {{"seed", 1}})->document, part.document);
@@ -114,7 +114,7 @@ TEST_F(Folder, APartIsReadWhereItWasMadeForTheSame) {
   EXPECT_FALSE(folder.read("another", {{"seed", 1}}));
 }
 
-TEST_F(Folder, APartThatIsBrokenIsNotRead) {
+TEST_F(Folder, ABrokenPartIsNotRead) {
   const PartFolder folder(name_);
   for (const char* text : {"", "{", "[]", "{\"format\": \"prostm-report-part/1\"}",
                            "{\"format\": \"prostm-report-part/1\", \"asked\": {\"seed\": 1}, "
@@ -124,7 +124,7 @@ TEST_F(Folder, APartThatIsBrokenIsNotRead) {
   }
 }
 
-TEST_F(Folder, AFileIsNoFolder) {
+TEST_F(Folder, AFileIsRejectedAsAFolder) {
   write_file(name_, "x");
   EXPECT_THROW(PartFolder{name_}, InputError);
   std::filesystem::remove(name_);

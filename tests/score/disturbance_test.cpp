@@ -12,7 +12,7 @@ namespace {
 constexpr double kSigma = 8.6e-3;
 constexpr GainLaw kGain{1.4};
 
-/// Returns exp(−r²/2σ²) about the middle of a square of skin with 1 mm cells.
+/// Returns exp(−r²/2σ²) around the middle of a square of skin with 1 mm cells.
 TargetField gaussian_target(double sigma) {
   TargetField target;
   target.resize(121, 121);
@@ -28,7 +28,7 @@ TargetField gaussian_target(double sigma) {
   return target;
 }
 
-/// Returns a regular polygon about the middle; with a radius of 0.1 µm it renders a single
+/// Returns a regular polygon around the middle; with a radius of 0.1 µm it renders a single
 /// Gaussian.
 Plan polygon(int corners, double radius) {
   FocalPath path;
@@ -52,7 +52,7 @@ void expect_equal(const Metrics& a, const Metrics& b) {
   EXPECT_EQ(a.spill, b.spill);
 }
 
-TEST(ScoreDisturbed, WithoutADisturbanceItIsTheScoreToTheBit) {
+TEST(ScoreDisturbed, OfZeroSizeGivesTheScoreExactly) {
   const TargetField target = gaussian_target(0.02);
   const Plan plan = polygon(20, 0.018);
   const Metrics plain = score_plan(target, plan, 0, kSigma, kGain);
@@ -62,7 +62,7 @@ TEST(ScoreDisturbed, WithoutADisturbanceItIsTheScoreToTheBit) {
                score_plan(target, plan, 0, 3.9e-3, kGain));
 }
 
-TEST(ScoreDisturbed, AShiftedGaussianHasTheErrorOfItsClosedForm) {
+TEST(ScoreDisturbed, AShiftedGaussianHasItsClosedFormError) {
   const TargetField target = gaussian_target(kSigma);
   const Plan point = polygon(8, 1e-7);
   const double area = 121 * 121 * 1e-6;
@@ -78,7 +78,7 @@ TEST(ScoreDisturbed, AShiftedGaussianHasTheErrorOfItsClosedForm) {
   }
 }
 
-TEST(ScoreDisturbed, AWiderFocusHasTheErrorOfItsClosedForm) {
+TEST(ScoreDisturbed, AWiderFocusHasItsClosedFormError) {
   const TargetField target = gaussian_target(kSigma);
   const Plan point = polygon(8, 1e-7);
   const double area = 121 * 121 * 1e-6;
@@ -103,7 +103,7 @@ TEST(ScoreDisturbed, TheDirectionOfAShiftDoesNotMatterToASymmetricPlan) {
     EXPECT_NEAR(m.rmse, first.rmse, 1e-9);
     EXPECT_NEAR(m.skill_8, first.skill_8, 1e-9);
   }
-  // between the axes only the square skin and its cells make a difference
+  // between the axes only the square shape of skin and cells matters
   const Metrics between =
       score_shifted(target, plan, 0, kSigma, kGain, 5e-3 * std::sqrt(0.5) * Vec2(1.0, 1.0));
   EXPECT_NEAR(between.rmse, first.rmse, 1e-4);
@@ -112,7 +112,7 @@ TEST(ScoreDisturbed, TheDirectionOfAShiftDoesNotMatterToASymmetricPlan) {
   EXPECT_NEAR(mean.skill_8, 0.5 * (first.skill_8 + between.skill_8), 1e-9);
 }
 
-TEST(ScoreDisturbed, MoreDisturbanceIsWorseForAPlanThatFits) {
+TEST(ScoreDisturbed, LargerDisturbancesWorsenAPlanThatFits) {
   const TargetField target = gaussian_target(kSigma);
   const Plan point = polygon(8, 1e-7);
   double before = score_plan(target, point, 0, kSigma, kGain).skill_8;

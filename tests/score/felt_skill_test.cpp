@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kRate = 40e3;  // [Hz]
 
-/// A target in a frame, its pressure times `factor`, and its plan.
+/// A target in a frame, with its pressure times `factor`, and its plan.
 struct Planned {
   explicit Planned(double factor = 1.0) {
     frame.patches.push_back(fields::make(fields::Pattern::OnePlume, 50, 32));
@@ -35,7 +35,7 @@ double felt(const Planned& planned, const Plan& plan, const EmitSettings& settin
   return felt_skill(plan, planned.frame, 0, settings, kRate, usx_array(), pool);
 }
 
-TEST(FeltSkill, IsThatOfThePerceptOfTheLoop) {
+TEST(FeltSkill, MatchesThePerceptOfTheLoop) {
   const Planned planned;
   const TargetField& target = planned.frame.patches[0];
   const LoopSamples loop = plan_loop(planned.plan, planned.frame, {}, kRate);
@@ -52,12 +52,12 @@ TEST(FeltSkill, IsThatOfThePerceptOfTheLoop) {
   EXPECT_LE(skill, 1.0);
 }
 
-TEST(FeltSkill, DoesNotKnowTheUnitOfTheTarget) {
+TEST(FeltSkill, DoesNotDependOnTheUnitOfTheTarget) {
   const Planned one, thousand(1000.0);
   EXPECT_NEAR(felt(one, one.plan), felt(thousand, thousand.plan), 0.02);
 }
 
-TEST(FeltSkill, IsUnknownWithoutPressureOrAPlan) {
+TEST(FeltSkill, IsUnknownWithoutPressureOrWithoutAPlan) {
   Planned planned;
   EXPECT_TRUE(std::isnan(felt(planned, {})));
   std::fill(planned.frame.patches[0].pressure.begin(), planned.frame.patches[0].pressure.end(),
@@ -65,7 +65,7 @@ TEST(FeltSkill, IsUnknownWithoutPressureOrAPlan) {
   EXPECT_TRUE(std::isnan(felt(planned, planned.plan)));
 }
 
-TEST(FeltSkill, IsUnknownOnceItIsStopped) {
+TEST(FeltSkill, IsUnknownIfStopped) {
   const Planned planned;
   WorkerPool pool(1);
   const auto skill = [&](bool go_on) {
@@ -76,7 +76,7 @@ TEST(FeltSkill, IsUnknownOnceItIsStopped) {
   EXPECT_TRUE(std::isnan(skill(false)));
 }
 
-TEST(FeltSkill, IsUnknownOfAPlanThatNoArrayPlays) {
+TEST(FeltSkill, IsUnknownForAPlanThatNoArrayCanPlay) {
   Planned planned;
   EmitSettings unheard;
   unheard.full_scale_pressure = 1e9;
@@ -87,15 +87,15 @@ TEST(FeltSkill, IsUnknownOfAPlanThatNoArrayPlays) {
   EXPECT_TRUE(std::isnan(felt(planned, planned.plan)));
 }
 
-TEST(FeltSkill, IsUnknownWhereALapTakesTooLong) {
-  for (const double speed : {0.5, 0.05}) {  // laps below and above those that a loop may have
+TEST(FeltSkill, IsUnknownIfALapTakesTooLong) {
+  for (const double speed : {0.5, 0.05}) {  // laps below and above the limit of a loop
     Planned planned;
     for (FocalPath& path : planned.plan.paths) path.speed = speed;
     EXPECT_TRUE(std::isnan(felt(planned, planned.plan))) << speed;
   }
 }
 
-TEST(PlanLoop, RefusesAPlanWithoutPressure) {
+TEST(PlanLoop, RejectsAPlanWithoutPressure) {
   Planned planned;
   for (FocalPath& path : planned.plan.paths)
     std::fill(path.pressure.begin(), path.pressure.end(), 0.0);

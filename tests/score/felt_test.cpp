@@ -12,7 +12,7 @@
 namespace prostm {
 namespace {
 
-TEST(Ghosts, AreMaximaWhereNothingIsToBeFelt) {
+TEST(Ghosts, AreMaximaOutsideTheTarget) {
   TargetField field = fields::make(fields::Pattern::OnePlume, 50, 32);
   std::fill(field.skin.begin(), field.skin.end(), std::uint8_t{1});
   std::fill(field.pressure.begin(), field.pressure.end(), 0.0);
@@ -59,7 +59,7 @@ FeltField spot(double pressure) {
   return FeelingSkin(raster).feel(raster, 5e-3, kParts, spot_loop(raster, pressure));
 }
 
-TEST(FeelingSkin, FeelsASpotWhereItIsAndHalfOfHalf) {
+TEST(FeelingSkin, FeelsASpotAtItsPositionAndIsLinear) {
   const FeltField whole = spot(100.0), half = spot(50.0);
   const auto strongest = std::max_element(whole.percept.begin(), whole.percept.end());
   EXPECT_EQ(strongest - whole.percept.begin(), 16 * 32 + 16);
@@ -70,9 +70,9 @@ TEST(FeelingSkin, FeelsASpotWhereItIsAndHalfOfHalf) {
   EXPECT_NEAR(half.intensity / whole.intensity, 0.5, 1e-9);
 }
 
-TEST(FeltSpectrum, SharesAreThoseOfThePerceptAndOfTheIntensity) {
+TEST(FeltSpectrum, SharesMatchThePerceptAndTheIntensity) {
   const TargetField raster = raster_of_skin();
-  // the fundamental is at 50 Hz, where area does not add; two more are above
+  // the fundamental is at 50 Hz, where area does not add; two harmonics are above
   constexpr int kLong = 100;
   std::vector<double> loop(raster.size() * kLong, 0.0);
   for (int k = 0; k < kLong; ++k) {
@@ -102,13 +102,13 @@ TEST(FeltSpectrum, SharesAreThoseOfThePerceptAndOfTheIntensity) {
     EXPECT_GT(h.share_of_intensity, 0.001);
   }
   EXPECT_LT(spectrum[1].share_at_strongest, 1e-12);
-  // at 50 Hz the intensity is that of the strongest place, which is this one
+  // at 50 Hz the intensity is that of the strongest position, which is this one
   const double expected =
       spectrum[0].share_at_strongest * std::pow(felt.largest / felt.intensity, 2);
   EXPECT_NEAR(spectrum[0].share_of_intensity / expected, 1.0, 1e-9);
 }
 
-TEST(FeelingBoundedSkin, FeelsASpotAsTheHalfSpaceDoesWhereItIsAndOtherwiseElsewhere) {
+TEST(FeelingBoundedSkin, FeelsASpotAsTheHalfSpaceDoesAtItsPositionAndDiffersElsewhere) {
   const TargetField raster = raster_of_skin();
   FeelingBoundedSkin skin(raster);
   const FeltField first = skin.feel(raster, 5e-3, kParts, spot_loop(raster, 100.0));
@@ -123,15 +123,15 @@ TEST(FeelingBoundedSkin, FeelsASpotAsTheHalfSpaceDoesWhereItIsAndOtherwiseElsewh
   for (std::size_t c = 0; c < raster.size(); ++c) {
     difference = std::max(difference, std::abs(first.percept[c] - half_space.percept[c]));
   }
-  EXPECT_GT(difference, 0.02 * half_space.largest);  // waves that came back
+  EXPECT_GT(difference, 0.02 * half_space.largest);  // reflected waves
   SkinSettings slow;
   slow.fast_speed = 5.0;
   const FeltField other =
       FeelingBoundedSkin(raster, slow).feel(raster, 5e-3, kParts, spot_loop(raster, 100.0));
-  EXPECT_GT(other.largest, 1.2 * first.largest);  // softer
+  EXPECT_GT(other.largest, 1.2 * first.largest);  // softer skin
 }
 
-TEST(FeelingSkin, SaysWhichLoopsAreFelt) {
+TEST(FeelingSkin, ReportsWhichLoopsAreFelt) {
   const TargetField raster = fields::make(fields::Pattern::OnePlume, 50, 32);
   LoopSamples loop;
   loop.sample_rate = 40e3;

@@ -10,7 +10,7 @@
 namespace prostm {
 namespace {
 
-TEST(Metrics, AreAllInTheirList) {
+TEST(Metrics, AreAllListed) {
   std::set<std::string> names;
   for (const Quantity<Metrics>& metric : quantities<Metrics>()) {
     EXPECT_TRUE(names.insert(metric.name).second) << metric.name;
@@ -22,7 +22,7 @@ TEST(Metrics, AreAllInTheirList) {
   EXPECT_EQ(names.size() * sizeof(double), sizeof(Metrics));
 }
 
-TEST(Metrics, MeanAndMedianAreOfEachForItself) {
+TEST(Metrics, MeanAndMedianAreTakenSeparately) {
   std::array<Metrics, 4> all;
   for (std::size_t i = 0; i < all.size(); ++i) {
     all[i].rmse = static_cast<double>(i * i);         // 0 1 4 9

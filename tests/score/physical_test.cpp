@@ -14,7 +14,7 @@
 namespace prostm {
 namespace {
 
-/// Returns 100 × 100 mm of skin in 5 mm cells, of height h(x, y) [m].
+/// Returns 100 × 100 mm of skin in 5 mm cells, with height h(x, y) [m].
 template <class Height>
 TargetField raster(Height&& height) {
   TargetField field;
@@ -79,7 +79,7 @@ TEST(SkinSurface, NormalsFollowTheSlope) {
   EXPECT_NEAR(skin.points.p_D[0].z(), 0.2 - 0.05 * std::tan(tilt), 1e-12);
 }
 
-TEST(SkinSurface, OneCellAndOneRowFaceTheArray) {
+TEST(SkinSurface, ASingleCellOrRowFacesTheArray) {
   TargetField field = raster([](double, double y) { return y; });
   std::fill(field.skin.begin(), field.skin.end(), std::uint8_t{0});
   for (int col = 3; col < 9; ++col) field.skin[field.index(10, col)] = 1;
@@ -124,7 +124,7 @@ TEST(Physical, LargestValuesDoNotDependOnTheCells) {
   EXPECT_NEAR(wide.side_lobe, narrow.side_lobe, 0.04 * narrow.side_lobe);
 }
 
-// Plan → emission → drives → transducers → field, at a full scale that the array can hold.
+// Plan → emission → drives → transducers → field, at a full scale that the array can reach.
 TEST(Physical, HalfTheTargetGivesHalfTheRadiationPressure) {
   const TargetField field = raster([](double x, double) { return 0.2 * x; });
   const PackedArray packed(usx_array(), Medium());
@@ -162,7 +162,7 @@ TEST(LoopDrives, TheCommonScaleHoldsInEverySample) {
   EXPECT_GT(focus.looked_at, 100);
   EXPECT_NEAR(focus.mean_level, 1.0, 0.05);
   EXPECT_LT(focus.worst_offset, 2e-3);
-  // with four times the full scale every sample falls short of it
+  // at four times the full scale every sample falls short of it
   settings.full_scale_pa = 40.0 * drives.full_scale_pa;
   EXPECT_EQ(drives_of(loop, settings).short_samples, loop.samples);
 }
@@ -178,7 +178,7 @@ TEST(LoopDrives, TransducersLagBehind) {
   EXPECT_LT(focus.mean_level, 0.97);
 }
 
-TEST(LoopDrives, StopsWhenAskedToAndRefusesSilence) {
+TEST(LoopDrives, StopsOnRequestAndRejectsSilence) {
   const TargetField field = raster([](double, double) { return 0.0; });
   LoopDriveResult out;
   EXPECT_FALSE(loop_drives(
@@ -188,14 +188,14 @@ TEST(LoopDrives, StopsWhenAskedToAndRefusesSilence) {
                std::invalid_argument);
 }
 
-TEST(LoopDrives, OneOfTwoFocalPointsAtOnePlaceIsLeftOut) {
+TEST(LoopDrives, OneOfTwoCoincidingFocalPointsIsDropped) {
   LiftedPlan plan = two_squares(raster([](double, double) { return 0.0; }), 1.0);
   plan.paths[1] = plan.paths[0];
   EXPECT_EQ(drives_of(loop_of(plan), {}).merged, loop_of(plan).samples);
 }
 
 // With equal requested pressure tilted skin gets less; with (E8) it gets the same.
-TEST(Physical, CompensatedTiltedSkinGetsWhatLevelSkinGets) {
+TEST(Physical, TiltedSkinGetsThePressureOfLevelSkinIfCompensated) {
   const PackedArray packed(usx_array(), Medium());
   WorkerPool pool(2);
   LoopDriveSettings settings;
@@ -206,7 +206,7 @@ TEST(Physical, CompensatedTiltedSkinGetsWhatLevelSkinGets) {
     frame.patches.push_back(raster([&](double x, double) { return std::tan(tilt) * x; }));
     const TargetField& field = frame.patches[0];
     LiftedPlan plan = two_squares(field, 0.4);
-    plan.paths.pop_back();  // two focal points disturb each other by more than the error of (E8)
+    plan.paths.pop_back();  // two focal points interfere by more than the error of (E8)
     compensate_tilt(plan, frame, bound);
     const LoopSamples loop = loop_of(plan);
     const PhysicalField out =

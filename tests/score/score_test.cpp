@@ -17,7 +17,7 @@ namespace {
 constexpr double kSigma = 8.6e-3;
 constexpr GainLaw kGain{1.4};
 
-/// Returns two rows of three cells, the last without skin.
+/// Returns two rows of three cells, the last one without skin.
 TargetField small_target() {
   TargetField target;
   target.resize(2, 3);
@@ -29,11 +29,11 @@ TargetField small_target() {
 
 TEST(ScoreField, ClosedFormsOnFiveCells) {
   const TargetField target = small_target();
-  // pressure rendered off the skin does not count
+  // pressure rendered off the skin is ignored
   const std::vector<double> rendered{2.0, 2.0, 2.0, 0.0, 0.0, 100.0};
   const Metrics m = score_field(target, rendered, 0.25);
   EXPECT_DOUBLE_EQ(m.coverage, 0.25);
-  // over the maximum of 4: target 1 .5 0 .5 0, rendered .5 .5 .5 0 0
+  // divided by the maximum of 4: target 1 .5 0 .5 0, rendered .5 .5 .5 0 0
   EXPECT_NEAR(m.rmse, std::sqrt((0.25 + 0.0 + 0.25 + 0.25 + 0.0) / 5.0), 1e-12);
   // deviations of the target .6 .1 −.4 .1 −.4, of the rendered .2 .2 .2 −.3 −.3
   const double product = 0.12 + 0.02 - 0.08 - 0.03 + 0.12,
@@ -61,7 +61,7 @@ TEST(ScoreField, APerfectFieldOfAnyStrengthHasFullSkill) {
   }
 }
 
-TEST(ScorePlan, OfFociIsThatOfTheNearestFocus) {
+TEST(ScorePlan, OfFociUsesTheNearestFocus) {
   TargetField target = small_target();
   Plan plan;
   plan.foci.push_back({0, target.position(0, 0), 4.0});
@@ -71,7 +71,7 @@ TEST(ScorePlan, OfFociIsThatOfTheNearestFocus) {
   const double near = std::exp(-0.5);
   const std::vector<double> rendered{4.0, 4.0 * near, 2.0 * near * near, 4.0 * near, 2.0, 0.0};
   const Metrics expected = score_field(target, rendered, 0.0);
-  // two cells are equally far from both foci: the first focus counts
+  // two cells have the same distance to both foci: the first focus is used
   const Metrics m = score_plan(target, plan, 0, sigma, kGain);
   EXPECT_NEAR(m.rmse, expected.rmse, 1e-12);
   EXPECT_NEAR(m.correlation, expected.correlation, 1e-12);
@@ -88,7 +88,7 @@ TEST(ScoreField, AFlatFieldHasNoSkillAndNoCorrelation) {
   }
 }
 
-TEST(ScoreField, TheUnitOfPressureChangesNothing) {
+TEST(ScoreField, TheUnitOfPressureDoesNotMatter) {
   const TargetField target = fields::make(fields::Pattern::FourPlumes, 2);
   const std::vector<double> rendered = fields::make(fields::Pattern::FourPlumes, 3).pressure;
   const Metrics m = score_field(target, rendered, 0.5);
@@ -105,7 +105,7 @@ TEST(ScoreField, TheUnitOfPressureChangesNothing) {
   }
 }
 
-/// Computes the skill after the blur by its definition: over every pair of skin cells.
+/// Computes the skill after the blur by its definition: over all pairs of skin cells.
 double slow_blurred_skill(const TargetField& target, const std::vector<double>& rendered) {
   constexpr double kBlur = 8.5e-3;
   std::vector<double> a, b;
@@ -160,7 +160,7 @@ TEST(ScoreField, BlurredSkillAgreesWithItsDefinition) {
   }
 }
 
-TEST(ScorePlan, CoverageIsTheShareWithinSigmaOfAPath) {
+TEST(ScorePlan, CoverageIsTheFractionWithinSigmaOfAPath) {
   TargetField target;
   target.resize(1, 11);
   target.cell = 4e-3;
@@ -182,7 +182,7 @@ TEST(ScorePlan, CoverageIsTheShareWithinSigmaOfAPath) {
             score_field(target, std::vector<double>(11), 0).skill_0);
 }
 
-TEST(ScorePlan, WithoutPressureAllIsZero) {
+TEST(ScorePlan, WithoutPressureEverythingIsZero) {
   TargetField target;
   target.resize(3, 3);
   target.cell = 5e-3;
@@ -213,7 +213,7 @@ TEST(Controls, AreFiniteForOneCellAndForEveryPattern) {
   for (const fields::Pattern pattern : fields::kPatterns) expect_finite(fields::make(pattern, 0));
 }
 
-TEST(Controls, TellAfterEachFieldHowManyAreDone) {
+TEST(Controls, ReportTheProgressAfterEachField) {
   const TargetField target = fields::make(fields::kPatterns[0], 0);
   Plan paths, foci;
   paths.paths.push_back({0, {Vec2(0, 0), Vec2(0.03, 0)}, {1.0, 1.0}, 0.06, 7.0, 0.06 / 7.0});
@@ -231,7 +231,7 @@ TEST(Controls, TellAfterEachFieldHowManyAreDone) {
   }
 }
 
-TEST(Controls, FociAtRandomPlacesAndOfAnotherTargetLoseToPlannedOnes) {
+TEST(Controls, RandomFociAndFociOfAnotherTargetScoreBelowPlannedOnes) {
   AmPlanner planner(AmSettings{}, fields::make(fields::Pattern::Ring, 0).size());
   Plan plan, other;
   PlanStats stats;
@@ -253,7 +253,7 @@ TEST(Controls, FociAtRandomPlacesAndOfAnotherTargetLoseToPlannedOnes) {
   EXPECT_GT(planned, 1.2 * moved);
 }
 
-TEST(WeightedRmse, CountsErrorsByTheirWeights) {
+TEST(WeightedRmse, WeightsErrorsByTheField) {
   for (const fields::Pattern pattern : fields::kPatterns) {
     TargetField target = fields::make(pattern, 3);
     Plan plan;

@@ -25,7 +25,7 @@ TargetField random_target(Random& random) {
   return target;
 }
 
-/// Computes (Q5) by its definition at one cell: a mean over the skin of a square of 4 b about it.
+/// Computes (Q5) by its definition at one cell: a mean over the skin of a square of 4 b around it.
 double blurred_at(const TargetField& target, const std::vector<double>& field, int row, int col) {
   constexpr double kB = 8.5e-3;
   const int reach = static_cast<int>(4.0 * kB / target.cell);
@@ -76,7 +76,7 @@ TEST(SkinBlur, IsTheSameOnEveryVectorTarget) {
   }
 }
 
-TEST(Controls, AreTheSameForAnyNumberOfThreads) {
+TEST(Controls, DoNotDependOnTheNumberOfThreads) {
   Random random(6);
   WorkerPool pool(3);
   for (int trial = 0; trial < 4; ++trial) {

@@ -42,7 +42,7 @@ HandFrame fist() {
   return frame;
 }
 
-/// Four bells 52 mm apart, one of them of another height.
+/// Four bells 52 mm apart, one of them with another height.
 TargetFrame four(double fourth = 1.0, double width = 0.012) {
   TargetFrame frame;
   TargetField& field = frame.patches.emplace_back();
@@ -80,7 +80,7 @@ TEST(StimulusGate, PassesAHeldHandOnceMostOfASecondIsGood) {
   EXPECT_THAT(sentence(after_a_second(held(), four())), HasSubstr("4 places of pressure"));
 }
 
-TEST(StimulusGate, RefusesHandsAndSaysWhatToDo) {
+TEST(StimulusGate, RejectsHandsAndExplainsWhatToDo) {
   struct Case {
     HandFrame hands;
     GateProblem problem;
@@ -109,8 +109,8 @@ TEST(StimulusGate, RefusesHandsAndSaysWhatToDo) {
   }
 }
 
-// a value that misses its bound by little is not printed as the bound
-TEST(StimulusGate, TellsValuesFromTheirBounds) {
+// a value that slightly misses its bound is not printed as the bound
+TEST(StimulusGate, DistinguishesValuesFromTheirBounds) {
   const double height = held().hands[0].position[kPalm].z();
   const auto at = [&](double palm) {
     return sentence(after_a_second(moved(Vec3(0, 0, palm - height)), four()));
@@ -123,7 +123,7 @@ TEST(StimulusGate, TellsValuesFromTheirBounds) {
               HasSubstr("it moves at 0.0504 m/s (at most 0.0500 m/s)"));
 }
 
-TEST(StimulusGate, RefusesFieldsAndSaysWhatIsWrong) {
+TEST(StimulusGate, RejectsFieldsAndExplainsTheProblem) {
   EXPECT_EQ(after_a_second(held(), four(0.0)).finding.problem, GateProblem::Maxima);
   EXPECT_EQ(after_a_second(held(), four(0.7)).finding.problem, GateProblem::Balance);
   EXPECT_EQ(after_a_second(held(), four(1.0, 0.022)).finding.problem, GateProblem::Saddle);
@@ -132,11 +132,11 @@ TEST(StimulusGate, RefusesFieldsAndSaysWhatIsWrong) {
   EXPECT_TRUE(after_a_second(held(), four(), {4, 0.0, 1.09 * force}).pass);
   EXPECT_EQ(after_a_second(held(), four(), {4, 0.0, 1.2 * force}).finding.problem,
             GateProblem::Force);
-  EXPECT_TRUE(after_a_second(held(), four(0.0), {0, 0.0, 0.0}).pass) << "nothing is asked";
+  EXPECT_TRUE(after_a_second(held(), four(0.0), {0, 0.0, 0.0}).pass) << "no stimulus is required";
   EXPECT_THAT(sentence(after_a_second(held(), four(0.7))), HasSubstr("70 % of the strongest"));
 }
 
-TEST(StimulusGate, AFifthOfBadFramesIsBorne) {
+TEST(StimulusGate, AFifthOfBadFramesIsTolerated) {
   StimulusGate gate(kUpdates, 10'000);
   GateResult result;
   for (int n = 0; n < 4 * kUpdates; ++n)
@@ -148,7 +148,7 @@ TEST(StimulusGate, AFifthOfBadFramesIsBorne) {
   EXPECT_FALSE(result.pass);
 }
 
-TEST(Stimulus, GoesWithTheSquareOfSizeAndSpeed) {
+TEST(Stimulus, IsProportionalToTheSquareOfSizeAndSpeed) {
   const Stimulus half = Stimulus{4, 64e-4, 0.6e-3}.scaled(0.5, 2.0);
   EXPECT_EQ(half.maxima, 4);
   EXPECT_NEAR(half.area, 16e-4, 1e-12);

@@ -17,8 +17,8 @@ Answer adjusted(const char* participant, double level, const char* method = "stm
   return a;
 }
 
-// Mean 2, standard deviation 1 of three people; Student's t of two degrees of freedom is 4.3027.
-TEST(Adjusted, ParticipantsCountOnceEach) {
+// Mean 2, standard deviation 1 of three people; Student's t for two degrees of freedom is 4.3027.
+TEST(Adjusted, EachParticipantCountsOnce) {
   const Answer answers[] = {adjusted("b", 2.0),         adjusted("a", 0.5), adjusted("a", 1.5),
                             adjusted("c", 3.0),         adjusted("c", 3.0), adjusted("a", 1.0),
                             adjusted("a", 5.0, "other")};
@@ -39,7 +39,7 @@ TEST(Adjusted, ParticipantsCountOnceEach) {
   EXPECT_FALSE(results[1].interval);
   const std::string words = in_words(results, 0.95);
   EXPECT_THAT(words, HasSubstr("With stm in x, it felt alike at 2, the mean of 3 participants"));
-  EXPECT_THAT(words, HasSubstr("says nothing of other people"));
+  EXPECT_THAT(words, HasSubstr("says nothing about other people"));
 }
 
 }  // namespace

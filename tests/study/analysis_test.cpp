@@ -13,14 +13,14 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// Adds `all` answers of one participant, the first `right` of them right.
+/// Adds `all` answers of one participant, of which the first `right` are right.
 void add(std::vector<Answer>& out, const std::string& who, const std::string& method,
          const std::string& scene, int right, int all) {
   for (int i = 0; i < all; ++i)
     out.push_back({.participant = who, .method = method, .scene = scene, .correct = i < right});
 }
 
-TEST(Analysis, OfThePapersScores) {
+TEST(Analysis, MatchesThePapersScores) {
   PROSTM_NEEDS_SHARED("data/paper/fig4.json");
   const test::WithoutTraps in_boost;
   std::vector<std::string> notes;
@@ -38,21 +38,24 @@ TEST(Analysis, OfThePapersScores) {
   EXPECT_NEAR(analysis.scenes[0].comparisons[0].permutation->p, 0.171, 5e-4);
   EXPECT_EQ(analysis.scenes[0].comparisons[0].needed, 29);
   const std::string words = in_words(analysis);
-  EXPECT_THAT(words, HasSubstr("Over participants, the test that holds for other people, it is not "
-                               "significant (permutation p = 0.171"));
+  EXPECT_THAT(words,
+              HasSubstr("Over participants, the test that generalises to other people, it is not "
+                        "significant (permutation p = 0.171"));
   EXPECT_THAT(words, HasSubstr("In four-plumes alone (62.5 % with am, 75.0 % with pro-stm) the "
                                "difference is not significant over answers"));
-  EXPECT_THAT(words, HasSubstr("They are not: participants differ 4.7 times as much with pro-stm"));
+  EXPECT_THAT(
+      words,
+      HasSubstr("They are not independent: participants differ 4.7 times as much with pro-stm"));
   EXPECT_THAT(words, HasSubstr("29 participants with each method are needed"));
 }
 
-TEST(Analysis, WithinParticipantsPairsThem) {
+TEST(Analysis, WithinParticipantsScoresArePaired) {
   const test::WithoutTraps in_boost;
   std::vector<Answer> answers;
   Random random(2);
   for (int person = 0; person < 10; ++person) {
     const std::string who = std::to_string(person);
-    const int easy = random.below(5);  // people differ more than methods
+    const int easy = random.below(5);  // people differ more than methods do
     add(answers, who, "am", "x", 2 + 2 * easy, 16);
     add(answers, who, "pro-stm", "x", 3 + 2 * easy + random.below(2), 16);
   }
@@ -64,7 +67,7 @@ TEST(Analysis, WithinParticipantsPairsThem) {
   EXPECT_NEAR(of.permutation->p, 2.0 / 1024.0, 1e-12);  // all ten did better
   EXPECT_GT(of.pooled_z.p, 0.01);
   EXPECT_THAT(in_words(analysis), HasSubstr("it is significant (permutation p = 0.002; paired t"));
-  EXPECT_THAT(in_words(analysis), Not(HasSubstr("do not show")));
+  EXPECT_THAT(in_words(analysis), Not(HasSubstr("show neither")));
 }
 
 TEST(Analysis, OneMethodIsComparedWithGuessing) {
@@ -77,7 +80,7 @@ TEST(Analysis, OneMethodIsComparedWithGuessing) {
               HasSubstr("28 of 32 answers were right (87.5 %), which is above"));
   AnalysisSettings third;
   third.chance = 0.85;
-  EXPECT_THAT(in_words(analyse(answers, third)), HasSubstr("guessing would do too (85 %"));
+  EXPECT_THAT(in_words(analyse(answers, third)), HasSubstr("compatible with guessing (85 %"));
 }
 
 TEST(Analysis, SensitivityComesFromQuestions) {
@@ -100,8 +103,8 @@ TEST(Analysis, SensitivityComesFromQuestions) {
   EXPECT_DOUBLE_EQ(found->bias, expected.bias);
 }
 
-// A pilot on oneself: what one person's answers say stays, what is about people is left out.
-TEST(Analysis, OfOneParticipantIsAboutThisPerson) {
+// A pilot on oneself: results about one person are kept, those about people are left out.
+TEST(Analysis, OfOneParticipantIsAboutThatPersonOnly) {
   const test::WithoutTraps in_boost;
   std::vector<Answer> answers;
   for (const char* scene : {"x", "y"}) {
@@ -121,13 +124,13 @@ TEST(Analysis, OfOneParticipantIsAboutThisPerson) {
   EXPECT_THAT(words, Not(HasSubstr("are needed")));
 }
 
-TEST(Analysis, OfOneParticipantWithEachMethodCannotTellThemFromPeople) {
+TEST(Analysis, OneParticipantPerMethodCannotSeparateMethodsFromPeople) {
   std::vector<Answer> answers;
   add(answers, "1", "am", "x", 18, 30);
   add(answers, "2", "pro-stm", "x", 27, 30);
   const Analysis analysis = analyse(answers);
   EXPECT_FALSE(analysis.scenes[0].comparisons.at(0).permutation);
-  EXPECT_THAT(in_words(analysis), HasSubstr("cannot tell methods from people"));
+  EXPECT_THAT(in_words(analysis), HasSubstr("methods and between people cannot be separated"));
 }
 
 TEST(Analysis, TrialsWithoutAnAnswerAreCountedAndLeftOut) {
@@ -155,17 +158,17 @@ TEST(Analysis, TrialsWithoutAnAnswerAreCountedAndLeftOut) {
   EXPECT_EQ(analysis.scenes[0].methods[0].correct.trials, 24);
   EXPECT_THAT(in_words(analysis),
               HasSubstr("with am in x 4 of 28 trials (14.3 %, of 2 participants"));
-  // who answered nothing in a scene is left out, and named
+  // participants without an answer in a scene are left out, and named
   answers.push_back({.participant = "d", .method = "am", .scene = "x", .answered = false});
   answers.push_back({.participant = "d", .method = "pro-stm", .scene = "x", .correct = true});
   const Analysis without = analyse(answers);
   EXPECT_EQ(without.left_out, std::vector<std::string>{"d"});
   EXPECT_EQ(without.participants.size(), 3U);
   EXPECT_THAT(in_words(without),
-              HasSubstr("Left out, since some scene has no answer of theirs: d"));
+              HasSubstr("Participants left out because they answered no trial of some scene: d"));
 }
 
-TEST(Analysis, RefusesWhatItCannotCompare) {
+TEST(Analysis, RejectsScoresThatCannotBeCompared) {
   const test::WithoutTraps in_boost;
   const auto refusal = [](const std::vector<Answer>& answers) {
     return test::input_error([&] { analyse(answers); });
@@ -179,7 +182,7 @@ TEST(Analysis, RefusesWhatItCannotCompare) {
   add(answers, "a", "am", "y", 3, 4);
   EXPECT_NO_THROW(analyse(answers));
   add(answers, "b", "pro-stm", "x", 3, 4);
-  EXPECT_THAT(refusal(answers), HasSubstr("each must have all of them, or each one"));
+  EXPECT_THAT(refusal(answers), HasSubstr("each must have all of them, or each only one"));
   AnalysisSettings settings;
   settings.level = 2.0;
   EXPECT_THROW(analyse(answers, settings), std::invalid_argument);

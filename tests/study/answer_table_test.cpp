@@ -1,4 +1,4 @@
-/// Answer tables as spreadsheets and experiment software write them.
+/// Answer tables as written by spreadsheets and experiment software.
 #include <array>
 #include <string>
 
@@ -21,7 +21,7 @@ std::string refusal(const std::string& text, const std::string& columns = {}) {
   return test::input_error([&] { read(text, columns); });
 }
 
-/// The same two answers with any separator, line end and spelling.
+/// The same two answers, with any separator, line end and spelling.
 std::string table(const std::string& separator, const std::string& end, const std::string& yes,
                   const std::string& no, const std::string& level) {
   std::string out;
@@ -65,7 +65,8 @@ TEST(AnswerTable, ReadsSeparatorsLineEndsAndSpellings) {
   expect_answers(read(table("\t", "\n", "1", "0", "0,25")), 0.25);
   expect_answers(read(table(",", "\n", "1", "0", "\"2,5\"")), 2.5);
   expect_answers(read("sep=;\r\n" + table(";", "\r\n", "1", "0", "1,250")), 1.25);
-  EXPECT_THAT(refusal(table("\t", "\n", "1", "0", "1,250")), HasSubstr("fraction or thousands"));
+  EXPECT_THAT(refusal(table("\t", "\n", "1", "0", "1,250")),
+              HasSubstr("may be decimal or separate thousands"));
   EXPECT_THAT(refusal("participant;method;scene;correct;level\n1;am;x;1;0,5\n1;am;x;1;1.250\n"),
               HasSubstr("line 3: level is \"1.250\": it has another decimal mark"));
   EXPECT_THAT(refusal(table(",", "\n", "1", "0", "0,25")), HasSubstr("decimal commas need"));
@@ -75,7 +76,7 @@ std::string utf16(const std::string& latin, bool big_endian) {
   std::string out;
   for (std::size_t i = 0; i < latin.size(); ++i) {
     auto byte = static_cast<unsigned char>(latin[i]);
-    if (byte == 0xC3) byte = static_cast<unsigned char>(0x40 + latin[++i]);  // of UTF-8
+    if (byte == 0xC3) byte = static_cast<unsigned char>(0x40 + latin[++i]);  // lead byte in UTF-8
     out += big_endian ? '\0' : static_cast<char>(byte);
     out += big_endian ? static_cast<char>(byte) : '\0';
   }
@@ -114,7 +115,7 @@ TEST(AnswerTable, MapsColumnsOfPsychoPy) {
   ASSERT_EQ(answers.size(), 3U);
   EXPECT_EQ(answers[0].participant, "07");
   EXPECT_EQ(answers[0].response_s, 0.51);
-  EXPECT_FALSE(answers[1].answered) << "no key was pressed, which PsychoPy counts as wrong";
+  EXPECT_FALSE(answers[1].answered) << "no key was pressed; PsychoPy counts that as wrong";
   EXPECT_TRUE(answers[2].answered);
   EXPECT_THAT(notes, Contains(HasSubstr("1 of 4 rows have no method and scene")));
   EXPECT_THAT(refusal(text), AllOf(HasSubstr("no column \"method\""),
@@ -138,7 +139,7 @@ TEST(AnswerTable, ReadsRowsOfJsPsych) {
   EXPECT_FALSE(answers[1].answered);
 }
 
-// write.table() of R writes the names of rows without a header.
+// write.table() of R writes row names without a header.
 TEST(AnswerTable, ReadsRowNamesOfR) {
   const std::string text =
       "\"participant\" \"method\" \"scene\" \"correct\"\n\"1\" \"a\" \"am\" \"x\" TRUE\n"
@@ -155,11 +156,11 @@ TEST(AnswerTable, ReadsRowNamesOfR) {
 TEST(AnswerTable, HeadersMatchWithoutCaseAndBlanks) {
   EXPECT_EQ(read(" Participant , METHOD,Scene ,Correct\n1,am,x,1\n").size(), 1U);
   EXPECT_THAT(refusal("Correct,participant,method,scene,CORRECT\n1,1,am,x,1\n"),
-              HasSubstr("stands there twice"));
+              HasSubstr("appears twice"));
 }
 
-// Columns of other programs may have our names and hold something else.
-TEST(AnswerTable, LeavesOutOthersQuestions) {
+// Columns of other programs may have the same names and a different meaning.
+TEST(AnswerTable, IgnoresQuestionsOfOtherPrograms) {
   std::vector<std::string> notes;
   const auto answers = answers_from_csv(
       "participant,method,scene,correct,question,answer\n1,am,x,1,Was it strong?,f\n", "a.csv", {},
@@ -168,17 +169,17 @@ TEST(AnswerTable, LeavesOutOthersQuestions) {
   EXPECT_THAT(notes, Contains(HasSubstr("names no scene")));
 }
 
-TEST(AnswerTable, TakesTrialNumbersThatRepeatAndFindsCopies) {
+TEST(AnswerTable, AcceptsRepeatedTrialNumbersAndFindsCopies) {
   const std::string header = "participant,method,scene,correct,trial,rt\n";
   std::vector<std::string> notes;
   EXPECT_EQ(
       answers_from_csv(header + "1,am,x,1,1,0.5\n1,am,x,1,1,0.6\n", "a.csv", {}, &notes).size(),
       2U);
-  EXPECT_THAT(notes, Contains(HasSubstr("numbers of trials repeat")));
-  EXPECT_THAT(refusal(header + "1,am,x,1,1,0.5\n1,am,x,1,1,0.5\n"), HasSubstr("a second time"));
+  EXPECT_THAT(notes, Contains(HasSubstr("trial numbers repeat")));
+  EXPECT_THAT(refusal(header + "1,am,x,1,1,0.5\n1,am,x,1,1,0.5\n"), HasSubstr("trial 1 twice"));
 }
 
-TEST(Spelling, KeysAreEqualForNamesThatDifferInSpellingAlone) {
+TEST(Spelling, KeysAreEqualForNamesThatDifferOnlyInSpelling) {
   using study::spelling_key;
   const std::array<std::array<const char*, 2>, 14> alike = {{{"01", "1"},
                                                              {"P007", "p7"},

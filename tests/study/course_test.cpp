@@ -16,12 +16,12 @@ const std::string kUpDown =
     "100\nstep = 0.1\nscale = \"log\"\nreversals = 8\ntracks = 2\n";
 const std::string kTwoMethods = "[method.a]\n[method.b.plan]\nspeed = 5\n";
 
-/// The answer of somebody with a threshold of 40 Hz, or 60.
+/// The answer of a person with a threshold of 40 Hz, or 60.
 bool felt(const Trial& t) {
   return *t.level > (t.scene == 0 ? 40.0 : 60.0);
 }
 
-TEST(Course, ToIdentifyHasTheTrialsOfTheOrder) {
+TEST(Course, AnIdentificationTaskFollowsTheOrder) {
   const Protocol p = test::study_protocol();
   Course course(p, 3);
   const auto order = trial_order(p, 3);
@@ -36,7 +36,7 @@ TEST(Course, ToIdentifyHasTheTrialsOfTheOrder) {
   EXPECT_TRUE(course.is_done());
 }
 
-// The same answers again lead to the same trials: so a session goes on after a crash.
+// The same answers lead to the same trials, which lets a session resume after a crash.
 TEST(Course, TheSameAnswersLeadToTheSameTrials) {
   const Protocol p = test::study_protocol("methods = \"within\"\n" + kUpDown, kTwoMethods);
   std::vector<Trial> trials;
@@ -59,7 +59,7 @@ TEST(Course, TheSameAnswersLeadToTheSameTrials) {
   EXPECT_NE(other.trial(), trials[0]) << "another participant has another order";
 }
 
-TEST(Course, TakesTracksInTurnAndMethodsOneAfterTheOther) {
+TEST(Course, AlternatesTracksAndRunsMethodsOneAfterTheOther) {
   const Protocol p = test::study_protocol("methods = \"within\"\n" + kUpDown, kTwoMethods);
   const auto methods = method_order(p, 1);
   std::map<int, int> count;  // trials of each track
@@ -75,16 +75,16 @@ TEST(Course, TakesTracksInTurnAndMethodsOneAfterTheOther) {
     before = t.method;
     EXPECT_EQ(t.level, std::clamp(*t.level, 10.0, 100.0));
     ++count[t.track];
-    // no track is ahead of another that still has trials to come
+    // no track is ahead of another one that still has trials left
     const int first = t.method == methods[0] ? 1 : 5;
     for (int track = first; track < first + 4; ++track)
-      EXPECT_LE(count[t.track] - 1, count[track]) << "or that other one is done";
+      EXPECT_LE(count[t.track] - 1, count[track]) << "unless the other one is done";
     if (count[t.track] > 8) break;
   }
   EXPECT_EQ(seen.front(), methods[0]);
 }
 
-TEST(Course, FindsWhatWasFelt) {
+TEST(Course, FindsTheThreshold) {
   const Protocol p = test::study_protocol("methods = \"within\"\n" + kUpDown, kTwoMethods);
   Course course(p, 1);
   std::map<int, int> scene_of;
@@ -105,8 +105,8 @@ TEST(Course, FindsWhatWasFelt) {
     EXPECT_NEAR(course.result(track), scene == 0 ? 40.0 : 60.0, scene == 0 ? 8.0 : 12.0) << track;
 }
 
-// Where the level's interval and the first track of a round are drawn, each comes equally often.
-TEST(Course, DrawsIntervalsAndTurnsFairly) {
+// The level's interval and the first track of a round are drawn with equal probabilities.
+TEST(Course, DrawsIntervalsAndTracksFairly) {
   const Protocol p = test::study_protocol(
       "[trials]\ntask = \"forced-choice\"\n[level]\nsetting = \"plan.speed\"\nlow = 3\nhigh = "
       "8\nreference = 3\nprocedure = \"bayes\"\ntrials = 40\n",
@@ -127,7 +127,7 @@ TEST(Course, DrawsIntervalsAndTurnsFairly) {
   EXPECT_NEAR(leads, 0.5 * rounds, 4.0 * std::sqrt(0.25 * rounds));
 }
 
-TEST(Course, ACorrectedAnswerLeadsWhereTheRightOneWouldHaveLed) {
+TEST(Course, ACorrectedAnswerHasTheEffectOfTheRightOne) {
   const Protocol p = test::study_protocol(kUpDown, "[method.a]\n");
   Course slipped(p, 1), right(p, 1);
   while (!right.is_done()) {
@@ -145,7 +145,7 @@ TEST(Course, ACorrectedAnswerLeadsWhereTheRightOneWouldHaveLed) {
   }
 }
 
-TEST(Course, AdjustmentsBeginOnBothSidesAndEndWhereTheyAreAccepted) {
+TEST(Course, AdjustmentsStartOnBothSidesAndEndAtTheAcceptedLevel) {
   const Protocol p = test::study_protocol(
       "[trials]\ntask = \"adjustment\"\nrepeats = 6\n[level]\nsetting = \"plan.speed\"\nlow = "
       "2\nhigh = 8\nreference = 7\nstep = 0.1\n",
@@ -166,7 +166,7 @@ TEST(Course, AdjustmentsBeginOnBothSidesAndEndWhereTheyAreAccepted) {
   EXPECT_NEAR(course.result(1), 7.05, 0.06);
 }
 
-TEST(Course, WholeNumbersStayWhole) {
+TEST(Course, IntegersStayIntegers) {
   const Protocol p = test::study_protocol(
       "[trials]\ntask = \"judgement\"\n[level]\nsetting = \"plan.paths\"\nlow = 1\nhigh = 4\n"
       "procedure = \"bayes\"\ntrials = 20\n",

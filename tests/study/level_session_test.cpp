@@ -32,7 +32,7 @@ Protocol protocol(const std::string& trials, const std::string& level,
 const std::string kForced = "task = \"forced-choice\"\n", kJudged = "task = \"judgement\"\n",
                   kAdjusted = "task = \"adjustment\"\nrepeats = 4\n";
 
-/// A session in a run that does at once what is wanted.
+/// A session in a run that obeys at once.
 struct Sitting {
   Sitting(const Protocol& p, const std::string& path, double step = 0.1)
       : step_(step), protocol(p), file(path), session(protocol, 1, file, kFacts, sight) {}
@@ -65,14 +65,14 @@ struct Sitting {
     return found;
   }
 
-  double step_;  // of the clock [s]
+  double step_;  // clock step [s]
   Protocol protocol;
   StudySight sight = test::sight_at(100.0);
   ResponseFile file;
   StudySession session;
 };
 
-TEST(LevelSession, PresentsTwoIntervalsWithAGapAndTakesTheAnswerAfterBothHaveBegun) {
+TEST(LevelSession, PresentsTwoIntervalsWithAGapAndAcceptsTheAnswerAfterBothHaveStarted) {
   const test::TemporaryFolder folder;
   const Protocol p =
       protocol(kForced, kLinear + "reference = 2\ninterval = 1\ngap = 0.5\nreversals = 4\n");
@@ -89,7 +89,7 @@ TEST(LevelSession, PresentsTwoIntervalsWithAGapAndTakesTheAnswerAfterBothHaveBeg
     EXPECT_THAT(s.answer(1), HasSubstr("both intervals"));
     ASSERT_TRUE(s.until([&] { return s.session.interval() == 0; }));
     EXPECT_FALSE(s.session.wanted().sound);
-    EXPECT_EQ(s.session.wanted().level, levels[1]) << "made ready in the gap";
+    EXPECT_EQ(s.session.wanted().level, levels[1]) << "prepared in the gap";
     s.sight.in_force = false;
     for (int i = 0; i < 20; ++i) s.pass();
     EXPECT_EQ(s.session.interval(), 0) << "until it is in force";
@@ -116,7 +116,7 @@ TEST(LevelSession, PresentsTwoIntervalsWithAGapAndTakesTheAnswerAfterBothHaveBeg
   EXPECT_LT(first, 6);
 }
 
-TEST(LevelSession, ComparesWithAnotherMethodWithoutRightAnswers) {
+TEST(LevelSession, ComparisonsWithAnotherMethodHaveNoRightAnswers) {
   const test::TemporaryFolder folder;
   const Protocol p = protocol(kForced, kLinear + "against = \"am\"\nshare = 0.5\n", kAm);
   Sitting s(p, folder.file("1.jsonl"));
@@ -133,7 +133,7 @@ TEST(LevelSession, ComparesWithAnotherMethodWithoutRightAnswers) {
   EXPECT_FALSE(line.contains("correct"));
 }
 
-TEST(LevelSession, AJudgementGoesDownAfterYesAndUpAfterNo) {
+TEST(LevelSession, AJudgementLowersTheLevelAfterYesAndRaisesItAfterNo) {
   const test::TemporaryFolder folder;
   Sitting s(protocol(kJudged, kLinear + "start = 5\nshare = 0.5\ncoarse = 0\ninterval = 1\n"),
             folder.file("1.jsonl"));
@@ -142,14 +142,14 @@ TEST(LevelSession, AJudgementGoesDownAfterYesAndUpAfterNo) {
     ASSERT_TRUE(s.present());
     EXPECT_NEAR(*s.session.wanted().level, expected, 1e-5);
     EXPECT_THAT(s.answer(1), HasSubstr("yes or no"));
-    EXPECT_THAT(s.act({.what = Do::Accept}), HasSubstr("not for now"));
+    EXPECT_THAT(s.act({.what = Do::Accept}), HasSubstr("not possible now"));
     EXPECT_EQ(s.act({.what = Do::Answer, .yes = yes}), "");
     expected += yes ? -0.3 : 0.3;
   }
   EXPECT_EQ(s.lines("trial").back()["answer"], 1);
 }
 
-TEST(LevelSession, ACorrectionChangesTheLevelThatFollows) {
+TEST(LevelSession, ACorrectionChangesTheNextLevel) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("1.jsonl");
   const Protocol p = protocol(kJudged, kLinear + "start = 5\nshare = 0.5\ncoarse = 0\n");
@@ -161,7 +161,7 @@ TEST(LevelSession, ACorrectionChangesTheLevelThatFollows) {
     s.until([&] { return s.session.wanted().level.has_value(); });
     EXPECT_NEAR(*s.session.wanted().level, 4.7, 1e-9);
     EXPECT_EQ(s.act({.what = Do::Correct}), "");
-    EXPECT_FALSE(s.session.wanted().level) << "the trial is prepared anew";
+    EXPECT_FALSE(s.session.wanted().level) << "the trial is prepared again";
     ASSERT_TRUE(s.present());
     next = *s.session.wanted().level;
     EXPECT_NEAR(next, 5.3, 1e-9);
@@ -171,14 +171,14 @@ TEST(LevelSession, ACorrectionChangesTheLevelThatFollows) {
   EXPECT_EQ(*s.session.wanted().level, next);
 }
 
-TEST(LevelSession, AnAdjustmentAlternatesWithTheStandardAndKeepsEveryChange) {
+TEST(LevelSession, AnAdjustmentAlternatesWithTheStandardAndRecordsEveryChange) {
   const test::TemporaryFolder folder;
   Sitting s(protocol(kAdjusted, kLinear + "against = \"am\"\ninterval = 1\ngap = 0.5\n", kAm),
             folder.file("1.jsonl"));
   EXPECT_EQ(s.session.course().most(), 4U);
   ASSERT_TRUE(s.present());
   const double start = *s.session.trial().level;
-  EXPECT_THAT(s.act({.what = Do::Accept}), HasSubstr("both are to be felt"));
+  EXPECT_THAT(s.act({.what = Do::Accept}), HasSubstr("both intervals must be felt"));
   for (int round = 0; round < 3; ++round) {
     ASSERT_TRUE(s.until([&] { return s.session.interval() == 1; }));
     EXPECT_TRUE(s.session.wanted().standard);
@@ -200,10 +200,10 @@ TEST(LevelSession, AnAdjustmentAlternatesWithTheStandardAndKeepsEveryChange) {
   EXPECT_EQ(line["changes"][2][1], end);
   EXPECT_EQ(line["reference"], "am");
   EXPECT_FALSE(line.contains("answer"));
-  EXPECT_THAT(s.act({.what = Do::Correct}), HasSubstr("not for now"));
+  EXPECT_THAT(s.act({.what = Do::Correct}), HasSubstr("not possible now"));
 }
 
-/// Everything but what differs when a trial is presented again.
+/// All fields except those that differ when a trial is presented again.
 std::vector<nlohmann::ordered_json> trials_of(const std::string& path) {
   std::vector<nlohmann::ordered_json> out;
   for (const ResponseLine& line : responses_from_text(read_file(path), path)) {
@@ -215,7 +215,7 @@ std::vector<nlohmann::ordered_json> trials_of(const std::string& path) {
   return out;
 }
 
-/// An act that depends on the trial alone.
+/// An action that depends on the trial alone.
 StudyAct steady(const StudySession& session) {
   const Trial& t = session.trial();
   if (session.protocol().trials.task == &adjustment()) {
@@ -227,7 +227,7 @@ StudyAct steady(const StudySession& session) {
   return {.what = Do::Answer, .interval = felt == t.level_first() ? 1 : 2};
 }
 
-TEST(LevelSession, GoesOnAfterItWasKilledAtAnyStep) {
+TEST(LevelSession, ResumesAfterBeingKilledAtAnyStep) {
   const test::TemporaryFolder folder;
   const std::string few = "reversals = 5\ntracks = 2\n";
   const Protocol protocols[] = {
@@ -246,14 +246,14 @@ TEST(LevelSession, GoesOnAfterItWasKilledAtAnyStep) {
     const auto expected = trials_of(whole);
     ASSERT_GT(expected.size(), 3U);
     std::filesystem::remove(whole);
-    // killed after each few acts and looks, at any phase
+    // killed after a few actions and steps, in any phase
     for (const int life : {1, 3, 7, 20, 55}) {
       const std::string path = folder.file("killed.jsonl");
       std::size_t known = 0;
       for (bool done = false; !done;) {
         Sitting s(p, path);
-        ASSERT_EQ(s.session.trials_done(), known) << "nothing is lost, nothing is doubled";
-        // the longer it takes to get anywhere, the more it may live
+        ASSERT_EQ(s.session.trials_done(), known) << "nothing is lost or doubled";
+        // a run lasts longer while there is no progress
         for (int i = 0; !done && (i < life || s.session.trials_done() == known); ++i) {
           if (s.session.phase() == StudyPhase::Ready) s.act({.what = Do::Next});
           if (s.session.takes_answer()) s.act(steady(s.session));
@@ -270,7 +270,7 @@ TEST(LevelSession, GoesOnAfterItWasKilledAtAnyStep) {
   }
 }
 
-TEST(LevelSession, SaysThatAFileHasLevelsThatItsStaircaseDoesNotAskFor) {
+TEST(LevelSession, ReportsLevelsInAFileThatItsStaircaseDidNotRequest) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("1.jsonl");
   const Protocol p = protocol(kJudged, kLinear);
@@ -289,17 +289,17 @@ TEST(LevelSession, SaysThatAFileHasLevelsThatItsStaircaseDoesNotAskFor) {
     }
   }
   EXPECT_THAT(test::input_error([&] { Sitting s(p, path); }),
-              HasSubstr("trial 1 has level 3, and its staircase asks for 8"));
+              HasSubstr("trial 1 has level 3, but its staircase asks for 8"));
 }
 
-// ---- what sessions find ----
+// ---- results of sessions ----
 
-/// Mean and spread of what sessions find, relative to the truth.
+/// Mean and spread of the results of sessions, relative to the truth.
 struct Found {
   double bias = 0.0, spread = 0.0;
 };
 
-/// The folder in memory, where the machine has any: 1000 sessions sync each line.
+/// A folder in memory, if the machine has one: 1000 sessions sync every line.
 std::string in_memory(const std::string& name) {
   const bool there = std::filesystem::is_directory("/dev/shm");
   return ((there ? std::filesystem::path("/dev/shm") : std::filesystem::temp_directory_path()) /
@@ -307,7 +307,7 @@ std::string in_memory(const std::string& name) {
       .string();
 }
 
-/// 1000 whole sessions of a simulated person, on a clock that is not real.
+/// 1000 complete sessions of a simulated person, on a simulated clock.
 Found find(const Protocol& p, double truth) {
   constexpr int kRuns = 1000;
   double sum = 0.0, squares = 0.0;
@@ -358,7 +358,7 @@ TEST(LevelSession, BayesFindsAKnownThreshold) {
   EXPECT_LT(found.spread, 0.10);
 }
 
-TEST(LevelSession, AdjustmentFindsWhatFeelsAlike) {
+TEST(LevelSession, AdjustmentFindsTheMatch) {
   const Protocol p = protocol("task = \"adjustment\"\nrepeats = 4\n",
                               kGain + "against = \"am\"\nstep = 0.02\n", kAm);
   const Found found = find(p, 1.8);
@@ -366,7 +366,7 @@ TEST(LevelSession, AdjustmentFindsWhatFeelsAlike) {
   EXPECT_LT(found.spread, 0.10);
 }
 
-TEST(LevelSession, IsRehearsedToItsEndByItself) {
+TEST(LevelSession, CanBeRehearsedToItsEnd) {
   const test::TemporaryFolder folder;
   const Protocol protocols[] = {protocol(kForced, kLinear + "reference = 2\nreversals = 6\n"),
                                 protocol(kJudged, kLinear + "reversals = 6\n"),
@@ -391,14 +391,14 @@ TEST(LevelSession, IsRehearsedToItsEndByItself) {
   }
 }
 
-/// Everything that a session tells the experimenter, and how often a word is in it.
+/// All messages of a session to the experimenter, and how often a word occurs in them.
 int count_news(Sitting& s, const std::string& word) {
   int count = 0;
   for (std::string news; s.session.next_news(news);) count += news.find(word) != std::string::npos;
   return count;
 }
 
-TEST(LevelSession, TellsThatAStaircaseStandsAtAnEndOfItsRange) {
+TEST(LevelSession, ReportsAStaircaseAtALimitOfItsRange) {
   const test::TemporaryFolder folder;
   for (const bool yes : {true, false}) {
     for (const char* procedure : {"up-down", "bayes"}) {
@@ -412,7 +412,7 @@ TEST(LevelSession, TellsThatAStaircaseStandsAtAnEndOfItsRange) {
       }
       EXPECT_EQ(told, 1);
       const auto bounds = s.lines("bound");
-      ASSERT_EQ(bounds.size(), 1U) << "written down once";
+      ASSERT_EQ(bounds.size(), 1U) << "recorded once";
       EXPECT_EQ(bounds[0]["bound"], yes ? "low" : "high");
       EXPECT_EQ(bounds[0]["answers"], 3);
       EXPECT_THAT(s.session.at_bound(), HasSubstr("end of its range"));
@@ -421,7 +421,7 @@ TEST(LevelSession, TellsThatAStaircaseStandsAtAnEndOfItsRange) {
   }
 }
 
-TEST(LevelSession, TellsNothingOfABoundThatAnswersLeave) {
+TEST(LevelSession, DoesNotReportABoundThatAnswersLeave) {
   const test::TemporaryFolder folder;
   const Protocol p = protocol(kJudged, kLinear);
   Sitting s(p, folder.file("1.jsonl"));
@@ -433,7 +433,7 @@ TEST(LevelSession, TellsNothingOfABoundThatAnswersLeave) {
   EXPECT_TRUE(s.lines("bound").empty());
 }
 
-TEST(LevelSession, TellsThatAnAdjustmentWasAcceptedAtAnEndOfItsRange) {
+TEST(LevelSession, ReportsAnAdjustmentAcceptedAtALimitOfItsRange) {
   const test::TemporaryFolder folder;
   const Protocol p = protocol(kAdjusted, kLinear + "against = \"am\"\n", kAm);
   Sitting s(p, folder.file("1.jsonl"));

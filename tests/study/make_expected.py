@@ -25,13 +25,13 @@ CHANCES = (0.5, 0.25, 1 / 3)
 
 
 def number(value):
-    """Twelve digits; null for what is not finite."""
+    """Twelve digits; null for non-finite values."""
     value = float(value)
     return float(f"{value:.12g}") if math.isfinite(value) else None
 
 
 def permutation(a, b):
-    """Share of all splits whose means differ as much, by a plain walk over them."""
+    """Fraction of all splits whose means differ as much, by plain enumeration."""
     both = np.concatenate([a, b])
     chosen = np.array(list(itertools.combinations(range(len(both)), len(a))))
     inside = both[chosen].sum(axis=1)
@@ -70,8 +70,8 @@ def welch(a, b):
 
 
 def logistic(random):
-    """Right answers at some levels, and the threshold and slope of a logistic regression on them; "step" where any
-    steep slope fits, null where they are further away than fit_psychometric looks or statsmodels finds none."""
+    """Right answers at some levels, and the threshold and slope of a logistic regression on them; "step" if any steep
+    slope fits, null if they are outside the range of fit_psychometric or statsmodels finds none."""
     levels = np.unique(random.uniform(0, 1, size=int(random.integers(3, 9))).round(3))
     trials = random.integers(5, 40, size=len(levels))
     slope = 10 ** random.uniform(0.3, 1.5)
@@ -81,7 +81,7 @@ def logistic(random):
 
 
 def is_step(trials, right):
-    """Whether answers turn from all wrong to all right at one level or between two: any steep slope fits."""
+    """Whether the answers change from all wrong to all right at one level or between two: any steep slope fits."""
     mixed = np.flatnonzero((right > 0) & (right < trials))
     if len(mixed) > 1:
         return False
@@ -95,7 +95,7 @@ def logistic_fit(levels, trials, right):
     model = sm.GLM(np.column_stack([right, trials - right]), sm.add_constant(levels), family=sm.families.Binomial())
     try:
         a, b = model.fit(tol=1e-14, maxiter=200).params
-    except PerfectSeparationError:  # also raised where two shares between 0 and 1 are met exactly
+    except PerfectSeparationError:  # also raised if two proportions between 0 and 1 are fitted exactly
         return None
     width = np.ptp(levels)
     found = 0.1 / width < b < 100 / width and abs(-a / b - levels[0] - width / 2) < 1.5 * width
@@ -108,7 +108,7 @@ def data_set(random):
     if random.random() < 0.5:
         sizes[1] = sizes[0]
     shares = random.beta(4, 3, size=2)
-    spread = 10 ** random.uniform(0, 2)  # of a beta distribution: small is over-dispersed
+    spread = 10 ** random.uniform(0, 2)  # of a beta distribution: small means over-dispersed
     a, b = (random.binomial(trials, random.beta(spread * s, spread * (1 - s), size=n)) for s, n in zip(shares, sizes))
     chance = CHANCES[int(random.integers(len(CHANCES)))]
     total, all_ = [a.sum(), b.sum()], [trials * len(a), trials * len(b)]

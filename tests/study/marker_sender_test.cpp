@@ -14,7 +14,7 @@
 namespace prostm {
 namespace {
 
-/// A focal point that sounds as long as it is not muted.
+/// A focal point that is active while it is not muted.
 class Tone final : public SampleSource {
  public:
   Tone(std::shared_ptr<Mute> mute, SoundWatch& watch) : mute_(std::move(mute)), watch_(watch) {}
@@ -29,13 +29,13 @@ class Tone final : public SampleSource {
   SoundWatch& watch_;
 };
 
-/// Waits until so many more blocks were asked for, at whatever speed.
+/// Waits until this many more blocks were requested, at any speed.
 void play(const Device& device, std::int64_t blocks) {
   const std::int64_t end = device.stats().blocks + blocks;
   ASSERT_TRUE(test::eventually([&] { return device.stats().blocks >= end; }));
 }
 
-/// An array that plays a tone while it is not muted, and the markers of it.
+/// An array that plays a tone while it is not muted, and its markers.
 class MarkersOfATone : public testing::Test {
  protected:
   void TearDown() override { device.stop(); }
@@ -48,7 +48,7 @@ class MarkersOfATone : public testing::Test {
   MarkerSender sender{{}, protocol, {3, 2}, device, watch};
 };
 
-TEST_F(MarkersOfATone, SendsWhenTheSampleLeavesTheArrayAndHandsEveryMarkerOver) {
+TEST_F(MarkersOfATone, SendsAMarkerWhenItsSampleLeavesTheArrayAndDeliversAll) {
   mute->set(MuteReason::Study, true);
   constexpr std::uint32_t kTrials = 5;
   for (int start = 1; start <= 2; ++start) {
@@ -77,7 +77,7 @@ TEST_F(MarkersOfATone, SendsWhenTheSampleLeavesTheArrayAndHandsEveryMarkerOver) 
     if (i == 2 * static_cast<int>(kTrials)) last = -1;
     EXPECT_GT(marker.sample, last);
     last = marker.sample;
-    EXPECT_FALSE(marker.emission) << "where the condition is not told, its speed is not";
+    EXPECT_FALSE(marker.emission) << "a hidden condition has no speed";
     ASSERT_TRUE(marker.played);
     EXPECT_GE(marker.sent, *marker.played);
     EXPECT_LT(marker.sent, *marker.played + 60.0);
@@ -91,7 +91,7 @@ TEST_F(MarkersOfATone, CountsTheSoundsOfAPresentation) {
   sender.present({1, 1, 0}, {});
   ASSERT_EQ(device.start(tone), DeviceStatus::Running);
   for (int part = 1; part <= 3; ++part) {
-    mute->set(MuteReason::NoHand, false);  // a hand that goes and comes back
+    mute->set(MuteReason::NoHand, false);  // a hand that leaves and returns
     play(device, 3);
     mute->set(MuteReason::NoHand, true);
     play(device, 15);
@@ -107,7 +107,7 @@ TEST_F(MarkersOfATone, CountsTheSoundsOfAPresentation) {
   }
 }
 
-TEST_F(MarkersOfATone, TellsHowThePresentationsNewestPlanIsPlayed) {
+TEST_F(MarkersOfATone, ReportsHowThePresentationsNewestPlanIsPlayed) {
   mute->set(MuteReason::Study, true);
   ASSERT_EQ(device.start(tone), DeviceStatus::Running);
   Marker on, off;
@@ -129,7 +129,7 @@ TEST_F(MarkersOfATone, TellsHowThePresentationsNewestPlanIsPlayed) {
   device.stop();
 }
 
-TEST(MarkerSender, AMarkerOfADeviceThatHasStoppedHasNoTime) {
+TEST(MarkerSender, AMarkerHasNoTimeIfTheDeviceHasStopped) {
   const Protocol protocol = test::study_protocol();
   const auto mute = std::make_shared<Mute>();
   SimulatedArray device({}, usx_array(), Medium());

@@ -9,13 +9,13 @@
 namespace prostm {
 namespace {
 
-TEST(Marker, LabelsKeepWhatTheyAreMadeOf) {
+TEST(Marker, LabelsKeepTheirParts) {
   for (const Presentation& p : {Presentation{0, 0, 0}, Presentation{1, 2, 3},
                                 Presentation{(1U << 24U) - 1, (1U << 24U) - 1, 0xFFFF}})
     EXPECT_EQ(Presentation::of_label(p.label()), p);
 }
 
-TEST(Marker, CodesAreThoseOfTheTable) {
+TEST(Marker, CodesMatchTheTable) {
   Marker marker;
   const auto code = [&](bool on, Presentation p, int part) {
     marker.on = on;
@@ -34,7 +34,7 @@ TEST(Marker, CodesAreThoseOfTheTable) {
   EXPECT_EQ(code(true, {1, 1, kMostMarkedConditions}, 1), 254);
 }
 
-TEST(Marker, TellsTheConditionOnlyWhereItIsLet) {
+TEST(Marker, ShowsTheConditionOnlyIfAllowed) {
   const Protocol blind = test::study_protocol();
   EXPECT_FALSE(blind.markers.conditions);
   Marker marker;
@@ -66,7 +66,7 @@ TEST(Marker, TellsTheConditionOnlyWhereItIsLet) {
   EXPECT_TRUE(marker_json(marker, blind, 2)["late_ms"].is_null());
 }
 
-TEST(Marker, ASessionsPresentationHasItsTrialAndItsConditionIfThatIsTold) {
+TEST(Marker, ASessionsPresentationHasItsTrialAndItsConditionIfAllowed) {
   for (const bool told : {false, true}) {
     const Protocol protocol =
         test::study_protocol(std::string("methods = \"within\"\n[markers]\nconditions = ") +
@@ -86,7 +86,7 @@ TEST(Marker, ASessionsPresentationHasItsTrialAndItsConditionIfThatIsTold) {
   }
 }
 
-TEST(Marker, MoreConditionsThanCodesAreRefused) {
+TEST(Marker, MoreConditionsThanCodesAreRejected) {
   std::string methods;
   for (int i = 0; i < 120; ++i) methods += "[method.m" + std::to_string(i) + "]\n";
   const auto read = [&](const std::string& more) {
@@ -94,7 +94,7 @@ TEST(Marker, MoreConditionsThanCodesAreRefused) {
   };
   EXPECT_NO_THROW(read("[markers]\nconditions = false\n")());
   EXPECT_THAT(test::input_error(read("[markers]\nconditions = true\n")),
-              testing::HasSubstr("markers.conditions is true for 240 conditions"));
+              testing::HasSubstr("markers.conditions needs a code for each of 240 conditions"));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ TEST(ModelStudy, GuessingIsBinomial) {
   EXPECT_NEAR(shares[2].interval.high, bm::quantile(of_both, 0.975) / 128.0, 1.01 / 128.0);
 }
 
-TEST(ModelStudy, ParticipantsWhoDifferWidenTheInterval) {
+TEST(ModelStudy, DifferencesBetweenParticipantsWidenTheInterval) {
   const std::vector<ModelParticipant> alike = {right_with(0.7, 0.7)},
                                       apart = {right_with(0.5, 0.5), right_with(0.9, 0.9)};
   const auto width = [](const std::vector<ModelParticipant>& pool) {
@@ -80,7 +80,7 @@ TEST(ModelStudy, LikelihoodIsThatOfParticipantsDrawnFromThePool) {
   EXPECT_NEAR(log_likelihood(pool, people), expected, 1e-12);
 }
 
-/// Moments whose only number is `value` in training, and `later` in trials.
+/// Moments with a single number, `value` in training and `later` in trials.
 std::vector<Percept> moments(double value, double later) {
   std::vector<Percept> out(2 * kTrialMoments, {value});
   for (std::size_t i = 1; i < out.size(); i += 2) out[i] = {later};
@@ -95,7 +95,7 @@ TEST(ModelStudy, AnObserverLearnsInTrainingAndAnswersInTrials) {
   ASSERT_EQ(same.right[0].size(), 1U);
   EXPECT_NEAR(same.right[0][0], half, 1e-12);
   EXPECT_NEAR(same.right[1][0], half, 1e-12);
-  // what the trials are like changes answers, and not what was learned
+  // the trials' values change the answers, but not what was learned
   const ModelParticipant swapped = observe({moments(9.0, 11.0), moments(11.0, 9.0)}, noise, 0.0);
   EXPECT_EQ(swapped.d_prime, same.d_prime);
   EXPECT_NEAR(swapped.right[0][0], 1.0 - half, 1e-12);

@@ -22,7 +22,7 @@ Percept random_percept(std::size_t size, Random& random) {
   return out;
 }
 
-TEST(Observer, SensitivityIsThatOfTheFullCovariance) {
+TEST(Observer, SensitivityMatchesTheFullCovariance) {
   Random random(1);
   for (int draw = 0; draw < 200; ++draw) {
     const auto size = static_cast<std::size_t>(1 + random.below(30));
@@ -44,7 +44,7 @@ TEST(Observer, SensitivityIsThatOfTheFullCovariance) {
   }
 }
 
-TEST(Observer, IsRightAsOftenAsItsSensitivitySays) {
+TEST(Observer, IsRightAsOftenAsItsSensitivityPredicts) {
   const Percept first = {1.0, 0.4, 0.2, 0.7}, second = {0.8, 0.6, 0.2, 0.5};
   const ObserverNoise noise{0.2, 0.3};
   const TemplateObserver observer(first, second, noise);
@@ -52,7 +52,7 @@ TEST(Observer, IsRightAsOftenAsItsSensitivitySays) {
   EXPECT_NEAR(observer.evidence(second), 0.5 * observer.d_prime(), 1e-12);
   EXPECT_NEAR(chance_of_right(observer.evidence(second), 0.0), normal_cdf(0.5 * observer.d_prime()),
               1e-12);
-  // with noise drawn as (Y2) says
+  // with noise drawn as in (Y2)
   Random random(2);
   constexpr int kDraws = 40'000;
   int right = 0;
@@ -68,7 +68,7 @@ TEST(Observer, IsRightAsOftenAsItsSensitivitySays) {
               4.0 * std::sqrt(expected * (1.0 - expected) / kDraws));
 }
 
-TEST(Observer, IsAtChanceWhereStimuliAreAlike) {
+TEST(Observer, IsAtChanceIfStimuliAreAlike) {
   for (const Percept& same : {Percept{0.3, 0.9}, Percept{0.0, 0.0}}) {
     const TemplateObserver observer(same, same, {0.1, 0.2});
     EXPECT_EQ(observer.d_prime(), 0.0);
@@ -87,7 +87,7 @@ TEST(Observer, LapsesAreGuesses) {
   EXPECT_NEAR(chance_of_right(-30.0, 0.06), 0.03, 1e-12);
 }
 
-TEST(Observer, RefusesWhatIsNoTemplate) {
+TEST(Observer, RejectsInvalidTemplates) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const ObserverNoise noise{0.1, 0.0};
   EXPECT_THROW(TemplateObserver({}, {}, noise), std::invalid_argument);

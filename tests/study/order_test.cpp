@@ -18,7 +18,7 @@ Protocol protocol_of(int methods, MethodsOf of, int seed = 3) {
   return p;
 }
 
-TEST(Order, OfAWilliamsSquareIsBalancedInPlaceAndInWhatComesBefore) {
+TEST(Order, AWilliamsSquareBalancesPositionAndPredecessor) {
   for (int n = 1; n <= 9; ++n) {
     const auto rows = williams_rows(n);
     ASSERT_EQ(rows.size(), static_cast<std::size_t>(n % 2 == 0 || n == 1 ? n : 2 * n));
@@ -39,7 +39,7 @@ TEST(Order, OfAWilliamsSquareIsBalancedInPlaceAndInWhatComesBefore) {
   }
 }
 
-TEST(Order, GivesEachMethodToTheSameNumberOfEveryBlock) {
+TEST(Order, GivesEachMethodToEquallyManyInEveryBlock) {
   for (int methods = 1; methods <= 5; ++methods) {
     const Protocol p = protocol_of(methods, MethodsOf::Between);
     for (int block = 0; block < 20; ++block) {
@@ -54,7 +54,7 @@ TEST(Order, GivesEachMethodToTheSameNumberOfEveryBlock) {
   }
 }
 
-TEST(Order, WithinParticipantsUsesEveryRowOfTheSquareOnceABlock) {
+TEST(Order, WithinParticipantsEveryRowOfTheSquareIsUsedOncePerBlock) {
   for (int methods = 2; methods <= 5; ++methods) {
     const Protocol p = protocol_of(methods, MethodsOf::Within);
     const auto rows = williams_rows(methods);
@@ -68,7 +68,7 @@ TEST(Order, WithinParticipantsUsesEveryRowOfTheSquareOnceABlock) {
   }
 }
 
-TEST(Order, OfTrialsHasEachSceneAsOftenAsAskedForWithEachMethodInTurn) {
+TEST(Order, TrialsHaveEachSceneAsOftenAsRequestedWithEachMethodInTurn) {
   Protocol p = protocol_of(3, MethodsOf::Within);
   p.trials.repeats = 5;
   for (int participant = 1; participant <= 200; ++participant) {
@@ -88,7 +88,7 @@ TEST(Order, OfTrialsHasEachSceneAsOftenAsAskedForWithEachMethodInTurn) {
   }
 }
 
-TEST(Order, IsTheSameForTheSameSeedAndAnotherForAnother) {
+TEST(Order, DependsOnTheSeed) {
   const Protocol p = protocol_of(2, MethodsOf::Between), q = protocol_of(2, MethodsOf::Between, 4);
   int same = 0;
   for (int participant = 1; participant <= 100; ++participant) {
@@ -96,7 +96,7 @@ TEST(Order, IsTheSameForTheSameSeedAndAnotherForAnother) {
     same += trial_order(p, participant) == trial_order(q, participant) ? 1 : 0;
   }
   EXPECT_LE(same, 1);
-  // a file that was begun must be found in the same order by every later version
+  // a file that was begun must have the same order in every later version
   const auto first = trial_order(p, 1);
   std::string text;
   for (const Trial& t : first) text += std::to_string(t.scene) + std::to_string(t.question) + " ";
@@ -133,7 +133,7 @@ double chance_of(const std::map<int, int>& counts, int kinds) {
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(kinds - 1), statistic));
 }
 
-TEST(Order, OfRandomTrialsFavoursNothing) {
+TEST(Order, RandomTrialsAreUnbiased) {
   const Protocol p = protocol_of(2, MethodsOf::Between);
   std::map<int, int> at_place[16], questions, pairs;
   for (int participant = 1; participant <= 2000; ++participant) {

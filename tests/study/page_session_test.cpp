@@ -1,4 +1,4 @@
-/// Trials wait for the participant's page, and are presented again where it fails.
+/// Trials wait for the participant's page, and are presented again if it fails.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ const nlohmann::ordered_json kFacts = {{"prostm", "test"}, {"rehearsal", false}}
 const ParticipantPage kFull{true, PageReport{true, PageNoise::Playing, true}};
 const std::string kNoise = "[training]\nseconds = 0\n[trials]\nnoise = true\n";
 
-/// A session in a run that does at once what is wanted, with a participant's page.
+/// A session in a run that obeys at once, with a participant's page.
 struct Sitting {
   Sitting(const std::string& protocol_text, const ParticipantPage& page)
       : protocol(test::study_protocol(protocol_text)),
@@ -60,7 +60,7 @@ ParticipantPage page_with(const std::function<void(ParticipantPage&)>& change) {
   return page;
 }
 
-/// Pages that lack something, and a word of what the experimenter is told.
+/// Reports of pages that lack something, and a word of the message to the experimenter.
 std::vector<std::pair<ParticipantPage, std::string>> lacking_pages() {
   return {{ParticipantPage{}, "not open"},
           {page_with([](auto& p) { p.report.reset(); }), "does not report"},
@@ -69,7 +69,7 @@ std::vector<std::pair<ParticipantPage, std::string>> lacking_pages() {
           {page_with([](auto& p) { p.report->noise = PageNoise::Silent; }), "noise"}};
 }
 
-TEST(PageSession, HoldsATrialWhileThePageLacksWhatTheProtocolAsksFor) {
+TEST(PageSession, HoldsATrialWhileThePageLacksARequirement) {
   for (const auto& [page, word] : lacking_pages()) {
     Sitting s(kNoise, page);
     s.act(Do::Next);
@@ -87,7 +87,7 @@ TEST(PageSession, HoldsATrialWhileThePageLacksWhatTheProtocolAsksFor) {
   }
 }
 
-TEST(PageSession, PresentsATrialAgainDuringWhichThePageLackedSomething) {
+TEST(PageSession, PresentsATrialAgainIfThePageLackedSomething) {
   for (const auto& [page, word] : lacking_pages()) {
     Sitting s(kNoise, kFull);
     s.act(Do::Next);
@@ -118,7 +118,7 @@ TEST(PageSession, PresentsATrialAgainDuringWhichThePageLackedSomething) {
   }
 }
 
-TEST(PageSession, WritesDownWhatATrialLackedThatWasPresentedAllTheSame) {
+TEST(PageSession, RecordsWhatATrialLackedThatWasPresentedAnyway) {
   Sitting s(kNoise, page_with([](auto& p) { p.report->noise = PageNoise::Off; }));
   s.act(Do::Next);
   EXPECT_FALSE(s.until(StudyPhase::Presenting));
@@ -131,22 +131,22 @@ TEST(PageSession, WritesDownWhatATrialLackedThatWasPresentedAllTheSame) {
   const ResponseLine trial = s.lines("trial").front();
   EXPECT_EQ(trial["anyway"], true);
   EXPECT_NEAR(trial["page"]["missing_s"]["noise"].get<double>(), 1.0, 0.06);
-  EXPECT_FALSE(s.until(StudyPhase::Presenting)) << "passed over once only";
+  EXPECT_FALSE(s.until(StudyPhase::Presenting)) << "overridden once only";
   s.act(Do::Anyway);
   ASSERT_TRUE(s.until(StudyPhase::Presenting));
   s.sight.page.report->visible = false;
   s.pass();
-  EXPECT_EQ(s.session.phase(), StudyPhase::Settling) << "that was not passed over";
+  EXPECT_EQ(s.session.phase(), StudyPhase::Settling) << "this was not overridden";
 }
 
-TEST(PageSession, NeedsNoPageWhereTheProtocolGivesItNothingToDo) {
+TEST(PageSession, NeedsNoPageIfTheProtocolDoesNotUseIt) {
   Sitting s("[training]\nseconds = 0\n", ParticipantPage{});
   s.act(Do::Next);
   ASSERT_TRUE(s.until(StudyPhase::Presenting));
   s.act(Do::Answer);
   EXPECT_EQ(s.lines("trial").front()["page"]["open"], false);
   EXPECT_EQ(s.session.page_problem(), "");
-  // one that is open shows the questions, so it must be seen
+  // an open page shows the questions, so it must be visible
   s.sight.page = page_with([](auto& p) { p.report->visible = false; });
   EXPECT_FALSE(s.until(StudyPhase::Presenting));
   s.sight.page = page_with([](auto& p) { p.report->noise = PageNoise::Off; });
@@ -161,7 +161,7 @@ TEST(PageSession, NeedsAPageOnWhichParticipantsAnswer) {
   EXPECT_TRUE(s.until(StudyPhase::Presenting));
 }
 
-TEST(PageSession, TrainsOnlyWhileThePageDoesItsPart) {
+TEST(PageSession, TrainsOnlyWhileThePageMeetsItsRequirements) {
   Sitting s("[training]\nseconds = 20\n[trials]\nnoise = true\n", kFull);
   ASSERT_EQ(s.session.phase(), StudyPhase::Training);
   s.pass(1.0);
@@ -177,7 +177,7 @@ TEST(PageSession, TrainsOnlyWhileThePageDoesItsPart) {
   EXPECT_EQ(s.lines("training").front()["page_missing"], (ResponseLine{"picture"}));
 }
 
-TEST(PageSession, LeavesOutWhatLastsLessThanASecondInItsRecord) {
+TEST(PageSession, OmitsConditionsShorterThanASecondFromItsRecord) {
   Sitting s(kNoise, kFull);
   s.act(Do::Next);
   for (int i = 0; i < 40; ++i) {

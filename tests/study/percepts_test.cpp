@@ -8,7 +8,7 @@
 namespace prostm {
 namespace {
 
-constexpr double kPressure = 0.1;  // of a focal point [Pa]
+constexpr double kPressure = 0.1;  // for a focal point [Pa]
 
 /// Flat skin 0.2 m above the array.
 TargetFrame flat_skin() {
@@ -21,7 +21,7 @@ TargetFrame flat_skin() {
   return frame;
 }
 
-/// A palm joint over the middle of the array, fingers towards +y.
+/// A palm joint above the middle of the array, fingers towards +y.
 Pose palm_up(double x, double y) {
   Pose X_DH = Pose::Identity();
   X_DH.linear() << 1, 0, 0, 0, 0, -1, 0, 1, 0;
@@ -29,7 +29,7 @@ Pose palm_up(double x, double y) {
   return X_DH;
 }
 
-/// Two of AM's focal points side by side, as far apart [m].
+/// Two focal points of AM side by side, at this distance [m].
 StimulusPercept two_points(StimulusFeeler& feeler, double apart) {
   Plan plan;
   for (const double x : {-0.5 * apart, 0.5 * apart})
@@ -41,24 +41,24 @@ double normal_cdf(double z) {
   return 0.5 * std::erfc(-z / std::sqrt(2.0));
 }
 
-TEST(Percepts, TwoPointsAreToldApartAsByPeople) {
+TEST(Percepts, TwoPointsAreDistinguishedAsByPeople) {
   StimulusFeeler feeler(PipelineSettings{}, kPressure);
   const Percept merged = two_points(feeler, 0.015).skin, apart = two_points(feeler, 0.045).skin,
                 threshold = two_points(feeler, 0.0323).skin;
   const TemplateObserver observer(merged, apart, {kTouchNoise, kStrengthNoise});
   // people: less than 5 % "two" at 15 mm, 84 % at 45 mm
   EXPECT_NEAR(observer.d_prime(), 1.645 + 0.994, 0.05);
-  // and half of the answers at 32.3 mm, which nothing was fitted to
+  // and half of the answers at 32.3 mm, which the model was not fitted to
   const double two = normal_cdf(observer.evidence(threshold) - observer.evidence(merged) - 1.645);
   RecordProperty("two_at_threshold", std::to_string(two));
   EXPECT_NEAR(two, 0.5, 0.15);
 }
 
-TEST(Percepts, PlacesBelongToTheHand) {
+TEST(Percepts, PositionsAreRelativeToTheHand) {
   TargetField skin = flat_skin().patches.front();
   std::vector<double> map(skin.size(), 1.0);
   const Percept flat = at_places(skin, map, palm_up(0.0, -0.02));
-  // a Gaussian keeps its integral: 1 where the hand is far from the raster's edge
+  // a Gaussian preserves its integral: 1 where the hand is far from the raster's edge
   EXPECT_NEAR(*std::ranges::max_element(flat), 1.0, 1e-3);
   map.assign(skin.size(), 0.0);
   map[skin.index(20, 12)] = 2.0;
@@ -82,21 +82,21 @@ TEST(Percepts, NothingIsFeltWithoutPressure) {
   }
 }
 
-TEST(Percepts, StrengthGrowsWithPressureAndPlacesWithIt) {
+TEST(Percepts, StrengthAndMapsAreProportionalToPressure) {
   StimulusFeeler feeler(PipelineSettings{}, kPressure);
   Plan plan;
   plan.foci.push_back({0, Vec2(0.01, 0.0), 0.2 * kPressure});
   const StimulusPercept weak = feeler.feel(plan, flat_skin(), palm_up(0.0, 0.0));
   plan.foci[0].pressure = 0.8 * kPressure;
   const StimulusPercept strong = feeler.feel(plan, flat_skin(), palm_up(0.0, 0.0));
-  // the skin is linear, and the share of the slew limit and the silent level is small
+  // the skin is linear, and the effect of the slew limit and the silent level is small
   EXPECT_NEAR(strong.strength / weak.strength, 4.0, 0.1);
   const auto largest = [](const Percept& p) { return *std::ranges::max_element(p); };
   EXPECT_NEAR(largest(strong.field) / largest(weak.field), 4.0, 1e-9);
   EXPECT_NEAR(largest(strong.skin) / largest(weak.skin), 4.0, 0.1);
 }
 
-TEST(Percepts, AHandFeelsTheSameSceneAgain) {
+TEST(Percepts, AHandFeelsTheSameInARepeatedScene) {
   PipelineSettings settings;
   settings.fluid.cells = 32;
   const ModelHand hand = random_hand(5);
@@ -104,7 +104,7 @@ TEST(Percepts, AHandFeelsTheSameSceneAgain) {
   const auto twice = [&] { return ++calls % 2 != 0; };
   const ScenePercepts first = feel_scene(settings, "four-plumes", hand, 4, twice),
                       again = feel_scene(settings, "four-plumes", hand, 4, twice);
-  ASSERT_EQ(first.am.size(), 2U);  // as the function said
+  ASSERT_EQ(first.am.size(), 2U);  // as the callback requested
   ASSERT_EQ(first.pro_stm.size(), 2U);
   EXPECT_GT(first.am[0].strength, 0.0);
   EXPECT_EQ(first.am[1].skin, again.am[1].skin);

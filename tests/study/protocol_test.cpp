@@ -39,7 +39,7 @@ TEST(Protocol, KeepsScenesAndMethodsInTheOrderOfTheFile) {
   EXPECT_EQ(p.trials.repeats, 5);
 }
 
-TEST(Protocol, OfThePaperIsThePapers) {
+TEST(Protocol, OfThePaperMatchesThePaper) {
   const Protocol p = read_protocol(test::source_file("data/protocols/one-plume-or-four.toml"), {});
   EXPECT_EQ(p.study.methods, MethodsOf::Between);
   EXPECT_EQ(p.study.participants, 16);
@@ -54,7 +54,7 @@ TEST(Protocol, OfThePaperIsThePapers) {
   EXPECT_EQ(p.methods[1].settings.plan.preset, Preset::Paper);
 }
 
-TEST(Protocol, WhatIsWrongIsSaidWithItsLine) {
+TEST(Protocol, ErrorsAreReportedWithTheirLine) {
   EXPECT_THAT(refusal("[trails]\n"), HasSubstr("p.toml, line 1"));
   EXPECT_THAT(refusal("[trails]\n"), HasSubstr("trials"));
   EXPECT_THAT(refusal("[methods.am]\n"), HasSubstr("method"));
@@ -118,7 +118,7 @@ TEST(Protocol, ExamplesOfEveryTaskAreRead) {
   }
 }
 
-TEST(Protocol, LevelsThatAreWrongAreRefused) {
+TEST(Protocol, InvalidLevelsAreRejected) {
   const std::string reference = "reference = 2\n";
   EXPECT_THAT(refusal(kScenes + kMethods + "[level]\nlow = 1\n"), HasSubstr("another task"));
   EXPECT_THAT(refusal(levels("guessing", kSpeed)), HasSubstr("line 2: trials.task"));
@@ -133,9 +133,9 @@ TEST(Protocol, LevelsThatAreWrongAreRefused) {
   };
   const std::string fine = "low = 2\nhigh = 8\n", step = "step = 0.5\n";
   EXPECT_THAT(refused("plan.speed", "low = 8\nhigh = 2\n"), HasSubstr("must be below level.high"));
-  EXPECT_THAT(refused("plan.speed", fine), HasSubstr("needs step"));
+  EXPECT_THAT(refused("plan.speed", fine), HasSubstr("needs a step"));
   EXPECT_THAT(refused("plan.speed", "low = 0\nhigh = 2\n", "scale = \"log\"\n" + step),
-              HasSubstr("above 0, since scale is log"));
+              HasSubstr("above 0 because scale is log"));
   EXPECT_THAT(refused("plan.speed", "low = 2\nhigh = 800\n", step),
               HasSubstr("speed = 800 m/s must be between 0.1 and 8 m/s"));
   EXPECT_THAT(refused("plan.speed", fine, step + "start = 9\n"), HasSubstr("level.start = 9"));
@@ -146,22 +146,22 @@ TEST(Protocol, LevelsThatAreWrongAreRefused) {
   EXPECT_THAT(refused("am.foci", "low = 1\nhigh = 3\n", step), HasSubstr("changes nothing"));
   EXPECT_THAT(refused("plan.paths", fine, step), HasSubstr("[method.a.emit] foci = 4"));
   EXPECT_THAT(refused("plan.gain", fine, step), HasSubstr("full_scale_pressure"));
-  EXPECT_THAT(refused("plan.speed", fine, step + reference), HasSubstr("compares with nothing"));
-  EXPECT_THAT(refusal(levels("forced-choice", kSpeed)), HasSubstr("compares with a standard"));
+  EXPECT_THAT(refused("plan.speed", fine, step + reference), HasSubstr("has no standard"));
+  EXPECT_THAT(refusal(levels("forced-choice", kSpeed)), HasSubstr("needs a standard"));
   EXPECT_THAT(refusal(levels("forced-choice", kSpeed + "reference = 3\n")),
               HasSubstr("must not be above low"));
   EXPECT_THAT(refusal(levels("adjustment", kSpeed + reference + "against = \"a\"\n")),
-              HasSubstr("not both"));
+              HasSubstr("give either"));
   EXPECT_THAT(refusal(levels("adjustment", kSpeed + "against = \"b\"\n")),
-              HasSubstr("no such [method.NAME]"));
+              HasSubstr("names no [method.NAME]"));
   EXPECT_THAT(refusal(levels("adjustment", kSpeed + "against = \"a\"\n")),
               HasSubstr("the only method"));
   std::string told = levels("judgement", kSpeed);
   told.insert(told.find("[level]"), "feedback = true\n");
-  EXPECT_THAT(refusal(told), HasSubstr("has no right answers"));
+  EXPECT_THAT(refusal(told), HasSubstr("has no right or wrong answers"));
 }
 
-TEST(Protocol, AsJsonHasEverySettingOfEveryMethod) {
+TEST(Protocol, JsonHasEverySettingOfEveryMethod) {
   const auto json = protocol_json(test::study_protocol());
   EXPECT_EQ(json["study"]["title"], "Plumes");
   EXPECT_EQ(json["scene"]["one-plume"]["question"], "One?");

@@ -62,7 +62,7 @@ TEST(Psychometric, AgreesWithLogisticRegressionOnAThousandDataSets) {
   EXPECT_EQ(fits + steps + far, 1000);
 }
 
-TEST(Psychometric, IntervalsHoldTheTruthAsOftenAsTheySay) {
+TEST(Psychometric, IntervalsContainTheTruthAsOftenAsStated) {
   const test::WithoutTraps in_boost;
   const Psychometric observer{.threshold = 0.45, .slope = 9.0, .guess = 0.5, .lapse = 0.02};
   Random random(7);
@@ -84,8 +84,8 @@ TEST(Psychometric, IntervalsHoldTheTruthAsOftenAsTheySay) {
   EXPECT_NEAR(slope, 0.95 * fits, 0.04 * fits);
 }
 
-// An end of the interval is where the likelihood ratio's test turns significant.
-TEST(Psychometric, IntervalsEndWhereTheLikelihoodHasFallen) {
+// An interval ends where the likelihood ratio test becomes significant.
+TEST(Psychometric, IntervalsEndWhereTheLikelihoodHasDropped) {
   const test::WithoutTraps in_boost;
   Random random(3);
   const Psychometric observer{.threshold = 0.5, .slope = 10.0, .guess = 0.5, .lapse = 0.0};
@@ -128,8 +128,8 @@ TEST(Psychometric, AnswersWithoutAFitHaveAReason) {
   EXPECT_EQ(why({{0.2, {5, 9}}, {0.5, {7, 9}}, {0.6, {8, 9}}}, 0.5), std::nullopt);
 }
 
-// An end of these intervals has a closed form: with the threshold beyond a level, a step is the
-// best, and the answers at that level have the share that is half-way, or the one of the other
+// The ends of these intervals have a closed form: for a threshold beyond a level, a step is the
+// best fit, and the answers at that level have the probability half-way, or that of the other
 // side.
 TEST(Psychometric, SeparatedAnswersBoundTheThreshold) {
   const test::WithoutTraps in_boost;
@@ -138,16 +138,16 @@ TEST(Psychometric, SeparatedAnswersBoundTheThreshold) {
   ASSERT_TRUE(bounds);
   EXPECT_EQ(bounds->best.low, 2.0);
   EXPECT_EQ(bounds->best.high, 3.0);
-  // 40 answers at a level are too many to be on the other side of the threshold
+  // 40 answers at a level are too many to lie on the other side of the threshold
   EXPECT_NEAR(bounds->interval.low, 2.0, 0.05);
   EXPECT_NEAR(bounds->interval.high, 3.0, 0.05);
-  // of 2 at a level, thresholds beyond them are still likely
+  // with 2 at a level, thresholds beyond them are still likely
   const auto few =
       fit_psychometric(Scores{{1.0, {0, 2}}, {2.0, {0, 2}}, {3.0, {2, 2}}, {4.0, {2, 2}}},
                        {0.0, 0.0})
           .bounds;
   ASSERT_TRUE(few);
-  EXPECT_NEAR(few->interval.low, 1.8937460, 1e-5);  // by a dense grid of slopes
+  EXPECT_NEAR(few->interval.low, 1.8937460, 1e-5);  // from a dense grid of slopes
   EXPECT_NEAR(few->interval.high, 3.1062540, 1e-5);
 }
 
@@ -168,8 +168,8 @@ TEST(Psychometric, AnswersBeyondTheLevelsAreCensored) {
   EXPECT_FALSE(fit_psychometric(Scores{{1.0, {2, 2}}}, {0.0, 0.02}).bounds);
 }
 
-// The numbers are scipy's (optimize.minimize over threshold, slope and lapse rate; brentq on the
-// profile of the likelihood; 1000 fits to answers drawn from the function).
+// The numbers are from scipy (optimize.minimize over threshold, slope and lapse rate; brentq on the
+// profile likelihood; 1000 fits to answers drawn from the function).
 TEST(Psychometric, FittedLapsesAndMisfitAgreeWithScipy) {
   const test::WithoutTraps in_boost;
   const std::array<int, 8> right = {26, 24, 33, 40, 43, 42, 45, 44};
@@ -190,11 +190,11 @@ TEST(Psychometric, FittedLapsesAndMisfitAgreeWithScipy) {
   ASSERT_TRUE(fixed && fixed->misfit);
   EXPECT_NEAR(fixed->function.threshold, 0.4245831, 1e-6);
   EXPECT_NEAR(fixed->misfit->deviance, 8.3416771, 1e-6);
-  EXPECT_NEAR(fixed->misfit->p, 0.218, 0.15);  // of the first ten that are as far off
+  EXPECT_NEAR(fixed->misfit->p, 0.218, 0.15);  // from the first ten that deviate as much
 }
 
-// Intervals of censored results hold the truth, too: few levels, all below or above the threshold.
-TEST(Psychometric, BoundsHoldTheTruth) {
+// Intervals of censored results contain the truth: few levels, all below or above the threshold.
+TEST(Psychometric, BoundsContainTheTruth) {
   const test::WithoutTraps in_boost;
   Random random(11);
   constexpr int kRuns = 300;
@@ -211,7 +211,7 @@ TEST(Psychometric, BoundsHoldTheTruth) {
   EXPECT_GE(holds, 0.93 * all);
 }
 
-TEST(Psychometric, MisfitIsAsRareAsItSaysAndFindsLapses) {
+TEST(Psychometric, MisfitIsAsRareAsStatedAndFindsLapses) {
   const test::WithoutTraps in_boost;
   Random random(5);
   const Psychometric good{0.5, 12.0, 0.5, 0.02}, lapsing{0.4, 25.0, 0.5, 0.2};

@@ -34,7 +34,7 @@ void put(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-TEST(ResponseFile, GoesOnWhereItEnded) {
+TEST(ResponseFile, ContinuesWhereItEnded) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.jsonl");
   written(path, 3);
@@ -50,7 +50,7 @@ TEST(ResponseFile, GoesOnWhereItEnded) {
   EXPECT_EQ(lines[3], line_of(4));
 }
 
-TEST(ResponseFile, CutOffAnywhereLosesTheLastLineAtMost) {
+TEST(ResponseFile, TruncationLosesAtMostTheLastLine) {
   const test::TemporaryFolder folder;
   const std::string whole = written(folder.file("whole.jsonl"), 4);
   const std::string path = folder.file("a.jsonl");
@@ -73,7 +73,7 @@ TEST(ResponseFile, CutOffAnywhereLosesTheLastLineAtMost) {
   }
 }
 
-TEST(ResponseFile, FindsEveryChangedByte) {
+TEST(ResponseFile, DetectsEveryChangedByte) {
   const test::TemporaryFolder folder;
   const std::string whole = written(folder.file("whole.jsonl"), 3);
   for (std::size_t at = 0; at < whole.size(); ++at) {
@@ -85,7 +85,7 @@ TEST(ResponseFile, FindsEveryChangedByte) {
       bool same = false;
       try {
         const auto lines = responses_from_text(text, "a", &cut_off);
-        // without its end of line the last one is not whole; nothing else may pass
+        // without its line end the last one is incomplete; nothing else may pass
         same = lines.size() == 3 || (at + 1 != whole.size() && cut_off.empty());
       } catch (const InputError& error) {
         ASSERT_THAT(error.what(), HasSubstr("line "));
@@ -95,7 +95,7 @@ TEST(ResponseFile, FindsEveryChangedByte) {
   }
 }
 
-TEST(ResponseFile, FindsLinesThatWereMovedDoubledOrLeftOut) {
+TEST(ResponseFile, DetectsMovedDoubledAndMissingLines) {
   const test::TemporaryFolder folder;
   const std::string text = written(folder.file("whole.jsonl"), 3);
   const std::size_t a = text.find('\n') + 1, b = text.find('\n', a) + 1;
@@ -109,10 +109,10 @@ TEST(ResponseFile, FindsLinesThatWereMovedDoubledOrLeftOut) {
   EXPECT_THAT(test::input_error([&] { responses_from_text("{\"a\":1}\n", "a"); }),
               HasSubstr("line 1 does not end with its check"));
   EXPECT_THAT(test::input_error([&] { responses_from_text(text + "nonsense\n", "a"); }),
-              HasSubstr("line 4 is no JSON object"));
+              HasSubstr("line 4 is not a JSON object"));
 }
 
-TEST(ResponseFile, IsLeftAsItWasWhenItWasEdited) {
+TEST(ResponseFile, IsLeftUnchangedIfItWasEdited) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.jsonl");
   std::string text = written(path, 3);
@@ -122,7 +122,7 @@ TEST(ResponseFile, IsLeftAsItWasWhenItWasEdited) {
   EXPECT_EQ(read_file(path), text + "{\"half");
 }
 
-TEST(ResponseFile, IsAsBeforeWhenTheDiskIsFull) {
+TEST(ResponseFile, IsUnchangedIfTheDiskIsFull) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.jsonl");
   written(path, 2);
@@ -138,7 +138,7 @@ TEST(ResponseFile, IsAsBeforeWhenTheDiskIsFull) {
   EXPECT_EQ(responses_from_text(read_file(path), path).size(), 3U);
 }
 
-TEST(ResponseFile, IsForOneProgramAtATime) {
+TEST(ResponseFile, IsLockedForOneProgram) {
   const test::TemporaryFolder folder;
   const ResponseFile file(folder.file("a.jsonl"));
   EXPECT_THAT(test::input_error([&] { ResponseFile other(folder.file("a.jsonl")); }),
@@ -147,7 +147,7 @@ TEST(ResponseFile, IsForOneProgramAtATime) {
               HasSubstr("cannot be created"));
 }
 
-TEST(ResponseFile, IsForOneProgramAtATimeWithoutLocksToo) {
+TEST(ResponseFile, IsLockedForOneProgramWithoutLocksToo) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.jsonl");
   for (const int error : {ENOLCK, ENOSYS, EOPNOTSUPP}) {
@@ -161,7 +161,7 @@ TEST(ResponseFile, IsForOneProgramAtATimeWithoutLocksToo) {
   EXPECT_EQ(folder.entries(), 1U);
 }
 
-TEST(ResponseFile, IsForOneProgramAlsoWhereThatHasNoLockFile) {
+TEST(ResponseFile, IsLockedAgainstAProgramWithoutALockFile) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.jsonl");
   written(path, 1);

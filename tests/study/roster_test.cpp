@@ -22,7 +22,7 @@ const nlohmann::ordered_json kFacts = {{"prostm", "test"}, {"rehearsal", false}}
 const std::string kShort =
     "participants = 4\n[training]\nseconds = 0\n[trials]\nrepeats = 1\nrest = 0.1\nsettle = 0.5\n";
 
-/// Writes the file of a participant who gives so many answers, and then leaves if they are to.
+/// Writes the file of a participant who gives this many answers, and then leaves if `leaves`.
 std::vector<Trial> write_participant(const Protocol& protocol, const std::string& path, int number,
                                      int answers, bool leaves,
                                      const std::optional<Replacement>& replaces = {}) {
@@ -44,7 +44,7 @@ std::vector<Trial> write_participant(const Protocol& protocol, const std::string
   return trials;
 }
 
-TEST(Roster, IdsThatDifferInSpellingAloneAreTheSame) {
+TEST(Roster, IdsThatDifferOnlyInSpellingAreTheSame) {
   for (const char* id : {"7", "07", "007", " 7", "7 ", "\t7\r\n"})
     EXPECT_EQ(study::spelling_key(id), "7");
   EXPECT_EQ(study::spelling_key("P07"), study::spelling_key(" p07 "));
@@ -54,7 +54,7 @@ TEST(Roster, IdsThatDifferInSpellingAloneAreTheSame) {
   EXPECT_EQ(study::spelling_key(""), "");
 }
 
-TEST(Roster, AReplacementHasTheOrderOfTheReplacedAndAnalysisLeavesThoseOut) {
+TEST(Roster, AReplacementHasTheOrderOfTheReplacedWhomTheAnalysisOmits) {
   for (const char* methods : {"methods = \"between\"\n", "methods = \"within\"\n"}) {
     const test::TemporaryFolder folder;
     const Protocol p = test::study_protocol(methods + kShort);
@@ -75,13 +75,13 @@ TEST(Roster, AReplacementHasTheOrderOfTheReplacedAndAnalysisLeavesThoseOut) {
     for (const Answer& answer : read_answers(files, notes))
       EXPECT_TRUE(answer.participant == "1" || answer.participant == "10") << answer.participant;
     EXPECT_THAT(notes, testing::Contains(HasSubstr("Participant 2 was replaced by 9")));
-    // whoever is not replaced among these files stays
+    // participants who are not replaced in these files stay
     const std::vector<std::string> some = {files[0], files[1]};
     EXPECT_EQ(read_answers(some, notes).size(), 4U);
   }
 }
 
-TEST(Roster, AReplacementGoesOnAfterACrashWithTheSameOrder) {
+TEST(Roster, AReplacementResumesAfterACrashWithTheSameOrder) {
   const test::TemporaryFolder folder;
   const Protocol p = test::study_protocol(kShort + "questions = \"random\"\n");
   const std::string path = folder.file("9.jsonl");
@@ -90,7 +90,7 @@ TEST(Roster, AReplacementGoesOnAfterACrashWithTheSameOrder) {
   EXPECT_EQ(read_roster(std::vector{path})[0].attendance, Attendance::Complete);
 }
 
-TEST(StudyStatus, CountsWhoHoldsThePlacesOfEachGroup) {
+TEST(StudyStatus, CountsWhoFillsThePlacesOfEachGroup) {
   const test::TemporaryFolder folder;
   const Protocol p = test::study_protocol("methods = \"between\"\n" + kShort);
   const std::vector<std::string> files = {folder.file("1.jsonl"), folder.file("2.jsonl"),
@@ -118,7 +118,7 @@ TEST(StudyStatus, CountsWhoHoldsThePlacesOfEachGroup) {
   EXPECT_EQ(methods_of(studies[0].participants[3]), methods_of(studies[0].participants[1]));
 }
 
-TEST(StudyStatus, KeepsProtocolsApartAndRefusesAParticipantTwice) {
+TEST(StudyStatus, SeparatesProtocolsAndRejectsAParticipantTwice) {
   const test::TemporaryFolder folder;
   const std::vector<std::string> files = {folder.file("1.jsonl"), folder.file("2.jsonl")};
   write_participant(test::study_protocol(kShort), files[0], 1, 1, false);

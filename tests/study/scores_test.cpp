@@ -29,7 +29,7 @@ std::string refusal(const std::string& text) {
 
 const std::string kHeader = "participant,method,scene,correct\n";
 
-TEST(Scores, ReadColumnsInAnyOrderBesideOthers) {
+TEST(Scores, ReadColumnsInAnyOrderAmongOthers) {
   const auto answers = read(
       "\xEF\xBB\xBFnote,correct,scene,method,participant,question,answer\r\n"
       "\"a, \"\"b\"\"\r\nc\",1,four-plumes,am,P1,one-plume,0\r\n"
@@ -46,13 +46,13 @@ TEST(Scores, ReadColumnsInAnyOrderBesideOthers) {
   EXPECT_FALSE(answers[1].correct);
 }
 
-TEST(Scores, MayLackQuestions) {
+TEST(Scores, MayOmitQuestions) {
   const auto answers = read(kHeader + "1,am,x,1\n1,am,x,0\n");
   ASSERT_EQ(answers.size(), 2U);
   EXPECT_EQ(answers[0].question, "");
 }
 
-TEST(Scores, WhatIsWrongIsSaidWithItsLine) {
+TEST(Scores, ErrorsAreReportedWithTheirLine) {
   EXPECT_THAT(refusal("participant,method,correct\n1,am,1\n"), HasSubstr("no column \"scene\""));
   EXPECT_THAT(refusal("scene,scene,participant,method,correct\n"), HasSubstr("twice"));
   EXPECT_THAT(refusal(kHeader), HasSubstr("no answer"));
@@ -63,17 +63,18 @@ TEST(Scores, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_THAT(refusal(kHeader + "1,am,\"x,1\n"), HasSubstr("cut off"));
   EXPECT_THAT(refusal(kHeader + "1,am,x\"y,1\n"), HasSubstr("a quote stands inside"));
   EXPECT_THAT(refusal(kHeader + "1,am,\"x\"y,1\n"), HasSubstr("after its closing quote"));
-  EXPECT_THAT(refusal(kHeader + "\"1\n2\",am,x,1\n"), HasSubstr("participant has a line break"));
+  EXPECT_THAT(refusal(kHeader + "\"1\n2\",am,x,1\n"),
+              HasSubstr("participant contains a line break"));
   EXPECT_THAT(refusal(kHeader + std::string("1,a\0m,x,1\n", 10)), HasSubstr("control character"));
 }
 
-// Someone who mends a score by hand forgets the answer, or copies a line.
-TEST(Scores, EditedByHandAreRefused) {
+// A person who corrects a score by hand may forget the answer, or copy a line.
+TEST(Scores, HandEditedOnesAreRejected) {
   const std::string header = "participant,trial,method,scene,question,answer,correct\n";
   EXPECT_EQ(read(header + "1,1,am,x,x,1,1\n1,2,am,x,y,1,0\n2,1,am,x,y,0,1\n").size(), 3U);
   EXPECT_THAT(refusal(header + "1,1,am,x,x,1,1\n1,2,am,x,y,1,1\n"),
               HasSubstr("line 3: correct is 1, but the answer 1"));
-  EXPECT_THAT(refusal(header + "1,1,am,x,x,1,1\n1,1,am,x,x,1,1\n"), HasSubstr("second time"));
+  EXPECT_THAT(refusal(header + "1,1,am,x,x,1,1\n1,1,am,x,x,1,1\n"), HasSubstr("has trial 1 twice"));
 }
 
 TEST(Scores, HaveALevelInEachRowOrNone) {
@@ -91,7 +92,7 @@ TEST(Scores, HaveALevelInEachRowOrNone) {
   }
 }
 
-TEST(Scores, ComeBackFromATidyTable) {
+TEST(Scores, RoundTripThroughATidyTable) {
   Random random(11);
   constexpr std::array kNames = {"am", "a, b", "\"", "\"x\"", "a|b", "é;", "-1", "a\"\",b"};
   const auto name = [&] {
@@ -122,7 +123,7 @@ TEST(Scores, ComeBackFromATidyTable) {
   }
 }
 
-TEST(Scores, TheNameMustSayTheKind) {
+TEST(Scores, TheFileNameMustStateTheKind) {
   const auto refused = [](const std::vector<std::string>& files) {
     std::vector<std::string> notes;
     return test::input_error([&] { read_answers(files, notes); });
@@ -132,7 +133,7 @@ TEST(Scores, TheNameMustSayTheKind) {
   EXPECT_THAT(refused({"a.jsonl", "b.json"}), HasSubstr("a.jsonl"));
 }
 
-TEST(Scores, OfThePaper) {
+TEST(Scores, OfThePaperAreRead) {
   const std::string scores = R"({"fig4": {"trials_per_participant": 4,
       "AM_correct": [2, 3], "AM_1plume": [1, 1], "AM_4plume": [1, 2],
       "STM_correct": [4], "STM_1plume": [2], "STM_4plume": [2]}})";
@@ -230,15 +231,15 @@ TEST(Scores, OfTrialsWithLevelsHaveTheKindOfTheirTask) {
   EXPECT_TRUE(felt.correct);
   EXPECT_EQ(read("c.jsonl", {{"trials", {{"task", "judgement"}}}}).kind, AnswerKind::Felt);
   EXPECT_EQ(read("d.jsonl", {{"trials", {{"task", "adjustment"}}}}).kind, AnswerKind::Adjusted);
-  EXPECT_TRUE(notes.empty()) << "60 trials were the most; a staircase may end before";
+  EXPECT_TRUE(notes.empty()) << "60 trials were the limit; a staircase may end earlier";
   const std::vector<std::string> mixed = {folder.file("a.jsonl"), folder.file("c.jsonl")};
-  EXPECT_THAT(test::input_error([&] { read_answers(mixed, notes); }), HasSubstr("other tasks"));
-  // as a table too
+  EXPECT_THAT(test::input_error([&] { read_answers(mixed, notes); }), HasSubstr("different tasks"));
+  // as a table, too
   for (const Answer& a : {right, felt})
     EXPECT_EQ(answers_from_csv(tidy_csv(std::span(&a, 1)), "t.csv").front(), a);
 }
 
-TEST(Scores, OfAParticipantsFileNeedItsFirstLineAndWholeTrials) {
+TEST(Scores, AParticipantsFileNeedsItsFirstLineAndCompleteTrials) {
   const test::TemporaryFolder folder;
   std::vector<std::string> notes;
   const auto refused = [&](const std::string& name) {
@@ -246,20 +247,21 @@ TEST(Scores, OfAParticipantsFileNeedItsFirstLineAndWholeTrials) {
     return test::input_error([&] { read_answers(files, notes); });
   };
   ResponseFile(folder.file("a.jsonl")).append({{"kind", "trial"}});
-  EXPECT_THAT(refused("a.jsonl"), HasSubstr("line 1 does not begin a participant's file"));
+  EXPECT_THAT(refused("a.jsonl"),
+              HasSubstr("line 1 is not the first line of a participant's file"));
   write_responses(folder.file("b.jsonl"), "1", 1);
   ResponseFile(folder.file("b.jsonl")).append({{"kind", "trial"}, {"method", "am"}});
   EXPECT_THAT(refused("b.jsonl"), HasSubstr("b.jsonl, line 4: "));
   write_responses(folder.file("d.jsonl"), "1", 1);
   ResponseFile(folder.file("d.jsonl"))
       .append({{"kind", "correction"}, {"trial", 2}, {"answer", 0}, {"correct", 0}});
-  EXPECT_THAT(refused("d.jsonl"), HasSubstr("line 4 corrects another trial than the last"));
+  EXPECT_THAT(refused("d.jsonl"), HasSubstr("line 4 corrects a trial that is not the last"));
   write_responses(folder.file("c.jsonl"), "1", 0);
   EXPECT_THAT(refused("c.jsonl"), HasSubstr("has no answer"));
 }
 
-// Two labs begin with participant 1.
-TEST(Scores, OfTwoPeopleWithOneNumberAreToldApartOnRequest) {
+// Two labs both start with participant 1.
+TEST(Scores, TwoPeopleWithOneNumberAreSeparatedOnRequest) {
   const test::TemporaryFolder folder;
   std::vector<std::string> notes, files;
   for (const char* lab : {"lab-a", "lab-b"}) {
@@ -284,7 +286,7 @@ TEST(Scores, OfTwoPeopleWithOneNumberAreToldApartOnRequest) {
   EXPECT_EQ(read_answers(files, notes, settings).back().participant, "1");
 }
 
-TEST(Scores, NamesThatDifferInSpellingAloneAreNeverTwo) {
+TEST(Scores, NamesThatDifferOnlyInSpellingAreTheSame) {
   const test::TemporaryFolder folder;
   const std::vector<std::string> files = {folder.file("a.csv")};
   std::vector<std::string> notes;
@@ -301,8 +303,8 @@ TEST(Scores, NamesThatDifferInSpellingAloneAreNeverTwo) {
   merge.merge_spellings = true;
   write_file(files[0], kHeader + "01,am,x,1\n1,stm,x,1\n");
   EXPECT_EQ(read_answers(files, notes, merge).back().participant, "01");
-  EXPECT_THAT(notes.back(), HasSubstr("each pair is taken as one"));
-  // white space at the ends is no spelling; no-break spaces of spreadsheets are white space
+  EXPECT_THAT(notes.back(), HasSubstr("each pair is treated as one"));
+  // white space at the ends is not spelling; no-break spaces of spreadsheets count as white space
   write_file(files[0], kHeader + "01,am,x,1\n01 ,stm,x,1\n\xC2\xA0" + "01,am, x,1\n");
   notes.clear();
   for (const Answer& a : read_answers(files, notes)) {
@@ -312,7 +314,7 @@ TEST(Scores, NamesThatDifferInSpellingAloneAreNeverTwo) {
   EXPECT_THAT(notes, Contains(HasSubstr("participant \"01\": written with and without")));
 }
 
-/// A participant's file with one trial of a method whose preset is given.
+/// A participant's file with one trial of a method with the given preset.
 void write_study(const std::string& path, const std::string& participant, const std::string& preset,
                  const std::string& hand = "study", bool rehearsal = false) {
   ResponseFile file(path);
@@ -336,7 +338,7 @@ void write_study(const std::string& path, const std::string& participant, const 
   file.append({{"kind", "end"}});
 }
 
-TEST(Scores, OfDifferentStimuliAreNotPooledUnderOneName) {
+TEST(Scores, DifferentStimuliAreNotPooledUnderOneName) {
   const test::TemporaryFolder folder;
   const std::vector<std::string> files = {folder.file("1.jsonl"), folder.file("2.jsonl")};
   write_study(files[0], "1", "fast");
@@ -350,10 +352,10 @@ TEST(Scores, OfDifferentStimuliAreNotPooledUnderOneName) {
   pool.pool = true;
   notes.clear();
   const auto answers = read_answers(files, notes, pool);
-  EXPECT_THAT(notes, Contains(HasSubstr("different stimuli are taken together (--pool)")));
+  EXPECT_THAT(notes, Contains(HasSubstr("different stimuli are combined (--pool)")));
   EXPECT_THAT(notes, Contains(HasSubstr("The hand differs: page (participant 2) and study")));
   EXPECT_THAT(notes, Contains(HasSubstr("2 trials with stm were presented although")));
-  // a tidy table carries what they are compared by
+  // a tidy table carries the values to compare
   const std::string table = tidy_csv(answers);
   EXPECT_THAT(
       table, HasSubstr("response_s,stimulus_checksum,gate,protocol_checksum,run_version,run_hand"));
@@ -364,7 +366,7 @@ TEST(Scores, OfDifferentStimuliAreNotPooledUnderOneName) {
   EXPECT_EQ(read_answers(tidy, notes, pool), answers);
 }
 
-TEST(Scores, OfRehearsalsAreNotPooledWithThoseOfPeople) {
+TEST(Scores, RehearsalsAreNotPooledWithPeople) {
   const test::TemporaryFolder folder;
   const std::vector<std::string> files = {folder.file("1.jsonl"), folder.file("2.jsonl")};
   write_study(files[0], "1", "fast");

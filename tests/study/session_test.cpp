@@ -19,12 +19,12 @@ using Do = StudyAct::Do;
 
 const nlohmann::ordered_json kFacts = {{"prostm", "test"}, {"rehearsal", false}};
 
-/// A session with its file, in a run that does at once what is wanted.
+/// A session with its file, in a run that obeys at once.
 struct Sitting {
   Sitting(const Protocol& p, const std::string& path, int participant = 1)
       : protocol(p), file(path), session(protocol, participant, file, kFacts, sight) {}
 
-  /// Lets time pass in steps of 50 ms, until a condition holds.
+  /// Lets time pass in steps of 50 ms until a condition holds.
   bool until(const std::function<bool()>& done, double seconds = 30.0) {
     for (int i = 0; i < 20 * seconds; ++i) {
       if (done()) return true;
@@ -42,7 +42,7 @@ struct Sitting {
   }
   std::string act(Do what) { return session.take({.what = what}, sight); }
   std::string answer(bool yes) { return session.take({.what = Do::Answer, .yes = yes}, sight); }
-  /// Goes from wherever it is to the presentation of the next trial.
+  /// Advances from any phase to the presentation of the next trial.
   bool present() {
     if (session.phase() == StudyPhase::Training) act(Do::Next);
     if (session.phase() != StudyPhase::Settling) act(Do::Next);
@@ -104,7 +104,7 @@ TEST(StudySession, LeadsFromTrainingToTheLastAnswer) {
   EXPECT_EQ(lines_of(s.file, "end").size(), 1U);
 }
 
-TEST(StudySession, IsSilentInStillAirBeforeEachTrialAndSettlesIt) {
+TEST(StudySession, ClearsTheAirInSilenceBeforeEachTrialAndSettlesIt) {
   const test::TemporaryFolder folder;
   Sitting s(test::study_protocol("[training]\nseconds = 0\n[trials]\nsettle = 3\n"),
             folder.file("1.jsonl"));
@@ -125,7 +125,7 @@ TEST(StudySession, IsSilentInStillAirBeforeEachTrialAndSettlesIt) {
   EXPECT_EQ(s.session.phase(), StudyPhase::Presenting);
 }
 
-TEST(StudySession, WaitsForTheGateUnlessItIsPassedOver) {
+TEST(StudySession, WaitsForTheGateUnlessOverridden) {
   const test::TemporaryFolder folder;
   Sitting s(test::study_protocol("[training]\nseconds = 0\n"), folder.file("1.jsonl"));
   GateResult gate;
@@ -143,7 +143,7 @@ TEST(StudySession, WaitsForTheGateUnlessItIsPassedOver) {
   s.act(Do::Anyway);
   ASSERT_TRUE(s.until(StudyPhase::Presenting));
   s.answer(true);
-  EXPECT_FALSE(s.until(StudyPhase::Presenting)) << "passed over once only";
+  EXPECT_FALSE(s.until(StudyPhase::Presenting)) << "overridden once only";
   gate.pass = true;
   s.sight.gate = gate;
   ASSERT_TRUE(s.until(StudyPhase::Presenting));
@@ -156,7 +156,7 @@ TEST(StudySession, WaitsForTheGateUnlessItIsPassedOver) {
   EXPECT_EQ(trials[1]["anyway"], false);
 }
 
-TEST(StudySession, NotesAGateThatIsNotRequired) {
+TEST(StudySession, RecordsAGateThatIsNotRequired) {
   const test::TemporaryFolder folder;
   Sitting s(test::study_protocol("[training]\nseconds = 0\n[trials]\ngate = \"noted\"\n"),
             folder.file("1.jsonl"));
@@ -166,13 +166,13 @@ TEST(StudySession, NotesAGateThatIsNotRequired) {
   EXPECT_EQ(lines_of(s.file, "trial")[0]["gate"]["pass"], false);
 }
 
-TEST(StudySession, CorrectsTheLastAnswerUntilTheNextIsAskedFor) {
+TEST(StudySession, CorrectsTheLastAnswerUntilTheNextQuestion) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("1.jsonl");
   const Protocol p = test::study_protocol("[training]\nseconds = 0\n[trials]\nfeedback = true\n");
   {
     Sitting s(p, path);
-    EXPECT_THAT(s.act(Do::Correct), HasSubstr("not for now"));
+    EXPECT_THAT(s.act(Do::Correct), HasSubstr("not possible now"));
     ASSERT_TRUE(s.present());
     const bool right = s.right();
     s.answer(true);
@@ -180,7 +180,7 @@ TEST(StudySession, CorrectsTheLastAnswerUntilTheNextIsAskedFor) {
     EXPECT_EQ(s.session.last_answer(), false);
     EXPECT_EQ(s.session.feedback(), !right);
     ASSERT_TRUE(s.until(StudyPhase::Presenting));
-    EXPECT_THAT(s.act(Do::Correct), HasSubstr("not for now"));
+    EXPECT_THAT(s.act(Do::Correct), HasSubstr("not possible now"));
   }
   Sitting s(p, path);
   EXPECT_EQ(s.session.last_answer(), false);
@@ -200,13 +200,13 @@ TEST(StudySession, PresentsATrialAgainAfterAPause) {
   const Trial before = s.session.trial();
   EXPECT_EQ(s.act(Do::Pause), "");
   EXPECT_FALSE(s.session.wanted().sound);
-  EXPECT_THAT(s.answer(true), HasSubstr("not for now"));
+  EXPECT_THAT(s.answer(true), HasSubstr("not possible now"));
   ASSERT_TRUE(s.present());
   EXPECT_EQ(s.session.trial(), before);
   EXPECT_TRUE(lines_of(s.file, "trial").empty());
 }
 
-TEST(StudySession, EndsAStimulusAtItsTimeLimitAndTakesAnswersAfterIt) {
+TEST(StudySession, EndsAStimulusAtItsTimeLimitAndAcceptsAnswersAfterIt) {
   const test::TemporaryFolder folder;
   Sitting s(test::study_protocol("[training]\nseconds = 0\n[trials]\ntime_limit = 1.5\n"),
             folder.file("1.jsonl"));
@@ -220,14 +220,14 @@ TEST(StudySession, EndsAStimulusAtItsTimeLimitAndTakesAnswersAfterIt) {
   EXPECT_NEAR(lines_of(s.file, "trial")[0]["response_s"].get<double>(), 4.6, 1e-9);
 }
 
-TEST(StudySession, HasBreaksFeedbackConsentAndQuestionsWhereAsked) {
+TEST(StudySession, HasBreaksFeedbackConsentAndQuestionsIfConfigured) {
   const test::TemporaryFolder folder;
   Protocol p = test::study_protocol(
       "consent = \"I agree\"\ndemographics = true\n[training]\nseconds = 0\n[trials]\n"
       "break_every = 3\nfeedback = true\n");
   Sitting s(p, folder.file("1.jsonl"));
   EXPECT_EQ(s.session.phase(), StudyPhase::Consent);
-  EXPECT_THAT(s.act(Do::Next), HasSubstr("not for now"));
+  EXPECT_THAT(s.act(Do::Next), HasSubstr("not possible now"));
   s.act(Do::Consent);
   EXPECT_EQ(s.session.phase(), StudyPhase::About);
   s.session.take({.what = Do::About, .about = {{"hand", "left"}}}, s.sight);
@@ -257,7 +257,7 @@ TEST(StudySession, TrainsBeforeEachMethodWithinParticipants) {
   EXPECT_EQ(s.session.training_left(), 120.0);
 }
 
-TEST(StudySession, GoesOnAfterItWasKilledAnywhere) {
+TEST(StudySession, ResumesAfterBeingKilledAnywhere) {
   const test::TemporaryFolder folder;
   Random random(5);
   const Protocol p = test::study_protocol("methods = \"within\"\n[trials]\nrepeats = 3\n");
@@ -267,7 +267,7 @@ TEST(StudySession, GoesOnAfterItWasKilledAnywhere) {
     bool done = false;
     while (!done) {
       Sitting s(p, path);
-      ASSERT_EQ(s.session.trials_done(), known) << "nothing is lost, nothing is doubled";
+      ASSERT_EQ(s.session.trials_done(), known) << "nothing is lost or doubled";
       const int acts = random.below(5);
       for (int i = 0; i < acts && !done; ++i) {
         ASSERT_TRUE(s.present());
@@ -286,7 +286,7 @@ TEST(StudySession, GoesOnAfterItWasKilledAnywhere) {
   }
 }
 
-TEST(StudySession, TrainsAnewWhenItWasKilledInTraining) {
+TEST(StudySession, RepeatsATrainingInWhichItWasKilled) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("1.jsonl");
   {
@@ -299,7 +299,7 @@ TEST(StudySession, TrainsAnewWhenItWasKilledInTraining) {
   EXPECT_EQ(s.session.wanted(), (StudyWanted{trial_order(s.protocol, 1)[0].method, 0, true, true}));
 }
 
-TEST(StudySession, GoesOnOnlyWithItsOwnProtocolAndParticipant) {
+TEST(StudySession, ResumesOnlyWithItsOwnProtocolAndParticipant) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("1.jsonl");
   { const Sitting s(test::study_protocol(), path); }
@@ -315,7 +315,7 @@ TEST(StudySession, GoesOnOnlyWithItsOwnProtocolAndParticipant) {
               HasSubstr("left"));
 }
 
-TEST(StudySession, IsNotResumedFromTrialsThatLackAValue) {
+TEST(StudySession, DoesNotResumeFromTrialsThatLackAValue) {
   const Protocol protocol = test::study_protocol("[training]\nseconds = 0\n");
   for (const char* key : {"answer", "target_mn", "rendered_mn"}) {
     const test::TemporaryFolder folder;
@@ -347,10 +347,10 @@ TEST(StudySession, KeepsAnswersWhileTheDiskIsFull) {
     const test::FullDisk full(read_file(s.file.path()).size() + 5);
     EXPECT_THAT(s.answer(true), HasSubstr("could not be written"));
     EXPECT_THAT(s.session.problem(), HasSubstr("could not be written"));
-    EXPECT_FALSE(s.until(StudyPhase::Presenting)) << "no trial before the answer is on the disk";
+    EXPECT_FALSE(s.until(StudyPhase::Presenting)) << "the answer must be on the disk first";
     EXPECT_THAT(s.session.finish(s.sight.time), HasSubstr("could not be written"));
     EXPECT_EQ(s.session.unwritten().size(), 1U);
-    EXPECT_EQ(lines_of(s.file, "trial").size(), 0U) << "only what is on the disk is counted";
+    EXPECT_EQ(lines_of(s.file, "trial").size(), 0U) << "only trials on the disk are counted";
   }
   ASSERT_TRUE(s.until(StudyPhase::Presenting));
   EXPECT_EQ(s.session.problem(), "");
@@ -358,7 +358,7 @@ TEST(StudySession, KeepsAnswersWhileTheDiskIsFull) {
   EXPECT_EQ(lines_of(s.file, "trial").size(), 1U);
 }
 
-TEST(StudySession, WritesDownThatTheDaysClockJumped) {
+TEST(StudySession, RecordsAJumpOfTheWallClock) {
   const test::TemporaryFolder folder;
   Sitting s(test::study_protocol(), folder.file("1.jsonl"));
   s.pass(1.0);
@@ -370,7 +370,7 @@ TEST(StudySession, WritesDownThatTheDaysClockJumped) {
   EXPECT_EQ(jumps[0]["jump_s"], -3600.0);
 }
 
-TEST(StudySession, SaysWhenConditionsDifferInStrength) {
+TEST(StudySession, ReportsThatConditionsDifferInStrength) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("1.jsonl");
   const Protocol p = test::study_protocol("[training]\nseconds = 0\n[trials]\nrepeats = 2\n");
@@ -389,7 +389,7 @@ TEST(StudySession, SaysWhenConditionsDifferInStrength) {
   }
 }
 
-TEST(StudySession, IsNeverBroughtOutOfStepByActs) {
+TEST(StudySession, ActionsNeverCorruptItsState) {
   const test::TemporaryFolder folder;
   Random random(7);
   for (int run = 0; run < 40; ++run) {
@@ -414,7 +414,7 @@ TEST(StudySession, IsNeverBroughtOutOfStepByActs) {
   }
 }
 
-TEST(StudySession, IsRehearsedToItsEndByItself) {
+TEST(StudySession, CanBeRehearsedToItsEnd) {
   const test::TemporaryFolder folder;
   Sitting s(test::study_protocol("consent = \"?\"\ndemographics = true\n[trials]\nrepeats = "
                                  "2\nbreak_every = 2\n"),
@@ -455,7 +455,7 @@ TEST(StudySession, IsRehearsedToItsEndByItself) {
   EXPECT_EQ(lines_of(other.file, "trial").size(), 3U);
 }
 
-TEST(StudySession, TellsTheTimeOfDay) {
+TEST(StudySession, ReportsTheTimeOfDay) {
   EXPECT_EQ(utc_text(0.0), "1970-01-01T00:00:00.000Z");
   EXPECT_EQ(utc_text(1700000000.25), "2023-11-14T22:13:20.250Z");
 }

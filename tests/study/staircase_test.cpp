@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kRuns = 1000;
 
-/// Bias and spread of what runs find, relative to the truth.
+/// Bias and spread of the results of runs, relative to the truth.
 struct Found {
   double bias = 0.0, spread = 0.0;
 };
@@ -31,7 +31,7 @@ Found find(double truth, const Run& run) {
   return out;
 }
 
-/// Lets an observer answer until a procedure is done.
+/// Lets an observer answer until a procedure is finished.
 template <class Procedure>
 double settle(Procedure procedure, const Psychometric& observer, std::uint64_t seed) {
   Random random(seed);
@@ -52,8 +52,8 @@ TEST(Staircase, UpAndDownFindsItsTarget) {
   }
 }
 
-// Kaernbach's steps settle where the target's share is right, also at other targets.
-TEST(Staircase, UpAndDownSettlesWhereTheTargetsShareIsRight) {
+// Kaernbach's steps converge to the level where the target's share is right, for any target.
+TEST(Staircase, UpAndDownConvergesWhereTheTargetsShareIsRight) {
   const Psychometric observer{.threshold = 0.5, .slope = 15.0, .guess = 0.0};
   for (const double target : {0.3, 0.5, 0.8}) {
     const double truth = 0.5 + std::log(target / (1.0 - target)) / 15.0;
@@ -83,8 +83,8 @@ TEST(Staircase, BayesFindsTheThreshold) {
   }
 }
 
-/// Tunes until the two feel alike: sees the difference with noise, steps against it, and is content
-/// when it is small.
+/// Adjusts until both feel alike: perceives the difference with noise, steps against it, and
+/// accepts once it is small.
 double adjust(double truth, std::uint64_t seed) {
   Random random(seed);
   Adjustment adjustment({.seed = seed});
@@ -99,7 +99,7 @@ double adjust(double truth, std::uint64_t seed) {
   return adjustment.result();
 }
 
-TEST(Staircase, AdjustmentFindsWhatFeelsAlike) {
+TEST(Staircase, AdjustmentFindsTheMatch) {
   for (const double truth : {0.3, 0.5, 0.7}) {
     const Found found = find(truth, [&](std::uint64_t seed) { return adjust(truth, seed); });
     EXPECT_LT(std::abs(found.bias), 0.05) << truth;
@@ -107,7 +107,7 @@ TEST(Staircase, AdjustmentFindsWhatFeelsAlike) {
   }
 }
 
-TEST(Staircase, AdjustmentBeginsBelowAndAboveInTurn) {
+TEST(Staircase, AdjustmentStartsBelowAndAboveInTurn) {
   Adjustment adjustment({.repeats = 6, .seed = 4});
   EXPECT_TRUE(std::isnan(adjustment.result()));
   for (int repeat = 0; repeat < 6; ++repeat) {
@@ -120,7 +120,7 @@ TEST(Staircase, AdjustmentBeginsBelowAndAboveInTurn) {
   EXPECT_EQ(adjustment.level(), 1.0);
 }
 
-// A session that went on after a crash gets the same answers again.
+// A session that resumes after a crash replays the same answers.
 TEST(Staircase, TheSameAnswersLeadToTheSameLevels) {
   WeightedUpDown a({}), b({});
   BayesianStaircase c({}), d({});
@@ -149,7 +149,7 @@ TEST(Staircase, LevelsStayInTheirRange) {
   }
 }
 
-TEST(Staircase, SettingsOutOfBoundsAreRefused) {
+TEST(Staircase, SettingsOutOfBoundsAreRejected) {
   EXPECT_THROW(WeightedUpDown({.start = 2.0}), std::invalid_argument);
   EXPECT_THROW(WeightedUpDown({.target = 1.0}), std::invalid_argument);
   EXPECT_THROW(WeightedUpDown({.coarse = 4, .reversals = 4}), std::invalid_argument);

@@ -98,7 +98,7 @@ TEST(Statistics, AgreeWithScipyAndStatsmodelsOnAThousandDataSets) {
   EXPECT_EQ(lines, 1000);
 }
 
-TEST(Statistics, OfThePapersScoresAreThose) {
+TEST(Statistics, MatchThePapersScores) {
   const test::WithoutTraps in_boost;
   const std::vector<int> am = {10, 8, 7, 12, 12, 7, 9, 13}, stm = {14, 15, 15, 14, 6, 11, 7, 15};
   const TestResult z = two_proportions_z(total(am, 16), total(stm, 16));
@@ -114,7 +114,7 @@ TEST(Statistics, OfThePapersScoresAreThose) {
             29);
 }
 
-// Sums of Boost's densities, which take a second for a hundred thousand answers.
+// Sums of Boost's densities take a second for a hundred thousand answers.
 TEST(Statistics, ExactTestsAreSumsOfDensities) {
   constexpr double kTie = 1.0 + 1e-7;
   Random random(8);
@@ -147,9 +147,9 @@ TEST(Statistics, ExactTestsOfManyAnswersApproachNormalOnes) {
   EXPECT_NEAR(binomial_p(b, 0.5), std::erfc(2.0 / std::sqrt(2.0)), 1e-3);
 }
 
-// Values that do not vary have no test; a table that is all right or all wrong tells of no
+// Constant values have no test, and a table that is all right or all wrong shows no
 // difference.
-TEST(Statistics, OfAnswersThatDoNotVary) {
+TEST(Statistics, OfConstantAnswersAreDefined) {
   EXPECT_EQ(two_proportions_z({8, 8}, {16, 16}).p, 1.0);
   EXPECT_EQ(two_proportions_z({0, 8}, {0, 16}).statistic, 0.0);
   EXPECT_NEAR(fisher_exact_p({8, 8}, {16, 16}), 1.0, 1e-12);
@@ -169,8 +169,8 @@ TEST(Statistics, OfAnswersThatDoNotVary) {
   EXPECT_NEAR(all.low, 1.0 - none.high, 1e-12);
 }
 
-// Both groups are of one population, so p must be below 5 % in 5 % of studies at most.
-TEST(Statistics, RandomSplitsKeepTheirLevel) {
+// Both groups are from one population, so p must be below 5 % in at most 5 % of studies.
+TEST(Statistics, RandomSplitsKeepTheirSignificanceLevel) {
   Random random(3);
   int below = 0;
   constexpr int kStudies = 40;
@@ -187,11 +187,11 @@ TEST(Statistics, RandomSplitsKeepTheirLevel) {
   EXPECT_LE(below, 6);  // 5 % of 40 is 2; 7 or more has a chance of 0.3 %
 }
 
-TEST(Statistics, RandomSplitsAreNearToAllOfThem) {
+TEST(Statistics, RandomSplitsApproximateAllSplits) {
   const Values a = {0.4, 0.5, 0.7, 0.6, 0.9, 0.55, 0.3, 0.8, 0.45},
                b = {0.6, 0.9, 0.8, 0.75, 0.85, 0.5, 0.95, 0.7, 0.65};
   const double exact = permutation(a, b, 1).p;  // 48 620 splits
-  Values longer_a = a, longer_b = b;  // two more alike in each group: C(22, 11) splits are too many
+  Values longer_a = a, longer_b = b;  // two more values in each: C(22, 11) splits are too many
   for (const double x : {0.6, 0.7}) longer_a.push_back(x), longer_b.push_back(x);
   const Permutation sampled = permutation(longer_a, longer_b, 1),
                     again = permutation(longer_a, longer_b, 1);
@@ -230,7 +230,7 @@ TEST(Statistics, PowerGrowsWithParticipantsAndEffect) {
     EXPECT_FALSE(participants_needed(0.01, groups));
     EXPECT_FALSE(participants_needed(0.0, groups));
   }
-  // without an effect, the test finds one in 5 % of studies
+  // without an effect, the test is significant in 5 % of studies
   EXPECT_NEAR(t_test_power(0.0, 12, Groups::Between), 0.05, 1e-9);
 }
 

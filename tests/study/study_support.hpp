@@ -19,7 +19,7 @@ inline Protocol study_protocol(const std::string& more = "", const std::string& 
       "p.toml", PipelineSettings{});
 }
 
-/// A hand that is held still, in a run that does at once what is wanted.
+/// A hand held still, in a run that obeys at once.
 inline StudySight sight_at(double time) {
   StudySight sight;
   sight.time = time;

@@ -27,7 +27,7 @@ void add(std::vector<Answer>& out, const std::string& who, const std::string& me
   }
 }
 
-/// Two methods with known thresholds, in two scenes, of four participants each.
+/// Two methods with known thresholds, in two scenes, with four participants each.
 std::vector<Answer> known_answers(const std::array<double, 2>& thresholds, double slope,
                                   int answers) {
   std::vector<Answer> out;
@@ -48,14 +48,14 @@ TEST(Thresholds, OfKnownObserversAreFound) {
   const std::array<double, 2> truth = {0.35, 0.55};
   const std::vector<Answer> answers = known_answers(truth, 14.0, 900);
   const auto results = fit_thresholds(answers, {});
-  ASSERT_EQ(results.size(), 2U * 2U * 5U);  // scenes, methods, all and each of four
+  ASSERT_EQ(results.size(), 2U * 2U * 5U);  // scenes, methods, pooled and each of four
   for (std::size_t i = 0; i < results.size(); ++i) {
     const ThresholdResult& of = results[i];
     EXPECT_EQ(of.scene, i < 10 ? "x" : "y");
     EXPECT_EQ(of.method, i / 5 % 2 == 0 ? "am" : "pro-stm");
     EXPECT_EQ(of.participant.empty(), i % 5 == 0);
     ASSERT_TRUE(of.fit && of.fit->threshold) << i;
-    // standard errors: 0.007 of all, 0.014 of one
+    // standard errors: 0.007 pooled, 0.014 for one
     EXPECT_NEAR(of.fit->function.threshold, truth[i / 5 % 2], of.participant.empty() ? 0.02 : 0.05);
     EXPECT_EQ(of.scores.size(), 9U);
     int trials = 0;
@@ -87,31 +87,31 @@ TEST(Thresholds, PoolAnswersAtTheSameLevel) {
   EXPECT_EQ(sorted[0].fit->function.threshold, expected->function.threshold);
 }
 
-TEST(Thresholds, AreSaidInWords) {
+TEST(Thresholds, AreDescribedInWords) {
   const test::WithoutTraps in_boost;
   std::vector<Answer> answers = known_answers({0.35, 0.55}, 14.0, 180);
   const Analysis analysis = analyse(answers);
   EXPECT_EQ(analysis.settings.guess, 0.5);
   EXPECT_EQ(analysis.settings.lapse, 0.02);
   const std::string words = in_words(analysis);
-  EXPECT_THAT(words, HasSubstr("compare methods only where all were asked at the same levels"));
+  EXPECT_THAT(words, HasSubstr("compare methods only if all were presented at the same levels"));
   EXPECT_THAT(words, HasSubstr("With am in x, the threshold is 0.3"));
   EXPECT_THAT(words, HasSubstr("With pro-stm in y, the threshold is 0.5"));
-  EXPECT_THAT(words, HasSubstr("4 of 4 single participants' answers have a fit"));
-  EXPECT_THAT(words, HasSubstr("between guessing (50 %) and the most (98 %)"));
+  EXPECT_THAT(words, HasSubstr("4 of 4 participants have a fit of their own"));
+  EXPECT_THAT(words, HasSubstr("between guessing (50 %) and the maximum (98 %)"));
   for (Answer& a : answers) a.correct = *a.level > 0.45;
   const std::string steps = in_words(analyse(answers));
   EXPECT_THAT(steps,
-              HasSubstr("a step fits as well as any slope, so that the answers bound the "
-                        "threshold and no slope: it is best from 0.4 to 0.5 (95 % interval"));
-  EXPECT_THAT(steps, HasSubstr("0 of 4 single participants' answers have a fit, 4 bounds alone."));
+              HasSubstr("a step fits as well as any slope, so the answers bound the "
+                        "threshold but not the slope: it is best from 0.4 to 0.5 (95 % interval"));
+  EXPECT_THAT(steps, HasSubstr("0 of 4 participants have a fit of their own, 4 only bounds."));
   for (Answer& a : answers) a.level = 0.5;
   EXPECT_THAT(in_words(analyse(answers)), HasSubstr("all answers are at one level"));
   for (Answer& a : answers) a.level.reset();
   EXPECT_THAT(in_words(analyse(answers)), Not(HasSubstr("threshold")));
 }
 
-TEST(Thresholds, ArePrintedWithDigitsThatTellThemApart) {
+TEST(Thresholds, ArePrintedWithEnoughDigitsToDistinguishThem) {
   const auto digits = [](double low, double high) {
     return level_digits(std::vector<LevelScore>{{low, {1, 2}}, {high, {1, 2}}});
   };
@@ -122,7 +122,7 @@ TEST(Thresholds, ArePrintedWithDigitsThatTellThemApart) {
   EXPECT_EQ(digits(0.5, 0.5), 4);
 }
 
-TEST(Thresholds, TakeGuessesAndLapses) {
+TEST(Thresholds, AccountForGuessesAndLapses) {
   const test::WithoutTraps in_boost;
   const std::vector<Answer> answers = known_answers({0.35, 0.55}, 14.0, 90);
   AnalysisSettings settings;
@@ -135,8 +135,8 @@ TEST(Thresholds, TakeGuessesAndLapses) {
   EXPECT_EQ(psi.lapse, 0.1);
 }
 
-// A participant who always says yes: nothing is right or wrong, and the threshold is below.
-TEST(Thresholds, OfAnswersForTheLevelAloneAreBelowIt) {
+// A participant who always says yes: no answer is right or wrong, and the threshold is below.
+TEST(Thresholds, AreBelowTheLevelsIfAllAnswersAreForTheLevel) {
   const test::WithoutTraps in_boost;
   std::vector<Answer> answers;
   for (int i = 0; i < 36; ++i) {
@@ -148,7 +148,8 @@ TEST(Thresholds, OfAnswersForTheLevelAloneAreBelowIt) {
                        .kind = AnswerKind::Felt});
   }
   const std::string words = in_words(analyse(answers));
-  EXPECT_THAT(words, HasSubstr("answers for the level are as many as can be at the lowest level"));
+  EXPECT_THAT(words,
+              HasSubstr("answers for the level are already at their maximum at the lowest level"));
   EXPECT_THAT(words, HasSubstr("it is below 1 (95 % interval of the likelihood over all slopes: "
                                "below 1"));
   EXPECT_THAT(words, Not(HasSubstr("right answers")));
@@ -174,7 +175,7 @@ TEST(Thresholds, LapsesAreFittedOnRequest) {
   EXPECT_THAT(test::input_error([&] { analyse(answers, settings); }), HasSubstr("leave one"));
 }
 
-TEST(Thresholds, NeedLevelsOfAllAnswers) {
+TEST(Thresholds, RequireLevelsForAllAnswers) {
   const test::WithoutTraps in_boost;
   std::vector<Answer> answers = known_answers({0.35, 0.55}, 14.0, 18);
   AnalysisSettings settings;

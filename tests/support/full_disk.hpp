@@ -7,7 +7,7 @@
 
 namespace prostm::test {
 
-/// During its lifetime no file can grow beyond `bytes`: a file-size limit stands for a full disk.
+/// Limits every file to `bytes` during its lifetime: the file-size limit emulates a full disk.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) {

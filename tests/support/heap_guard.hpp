@@ -9,7 +9,7 @@ namespace prostm::test {
 class HeapGuard {
  public:
   HeapGuard();
-  std::size_t allocations() const;  ///< by this thread since construction
+  std::size_t allocations() const;  ///< by this thread, since construction
 
  private:
   std::size_t start_;

@@ -1,5 +1,5 @@
 #pragma once
-/// Bad input must be answered with one sentence about the problem.
+/// Bad input must produce one sentence about the problem.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// Disables traps, which would stop a test in a library: converting a text like 1e999 overflows in
+/// Disables floating-point traps, which would stop a test in a library: converting text like 1e999
 /// the C library, and Boost's noncentral t of two degrees of freedom compares a NaN on its way.
 class WithoutTraps {
  public:

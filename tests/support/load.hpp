@@ -6,7 +6,7 @@
 
 namespace prostm::test {
 
-/// Returns `count` in a plain build, a twentieth of it under the address or the thread sanitizer.
+/// Returns `count` in a plain build, and a twentieth of it under the address or thread sanitizer.
 constexpr std::uint64_t reduced(std::uint64_t count) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return count / 20;
@@ -20,8 +20,8 @@ struct Seeds {
   std::uint64_t first, end;
 };
 
-/// Returns `count` seeds (see reduced()) from 0 on, unless PROSTM_RANDOM_INPUTS and
-/// PROSTM_FIRST_SEED say otherwise.
+/// Returns `count` seeds (see reduced()), starting with 0, unless PROSTM_RANDOM_INPUTS and
+/// PROSTM_FIRST_SEED specify others.
 inline Seeds seeds(std::uint64_t count) {
   const auto number = [](const char* name, std::uint64_t otherwise) {
     const char* text = std::getenv(name);

@@ -12,7 +12,7 @@ std::atomic<int> NoLocks::error_{0};
 
 }  // namespace prostm::test
 
-// Takes the place of libc's, for shared libraries too.
+// Overrides the function of libc, also for shared libraries.
 extern "C" int flock(int fd, int operation) noexcept {
   const int error = prostm::test::NoLocks::error();
   if (error == 0) return static_cast<int>(::syscall(SYS_flock, fd, operation));

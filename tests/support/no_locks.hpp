@@ -5,7 +5,7 @@
 
 namespace prostm::test {
 
-/// During its lifetime flock() fails with `error` in the whole test program, libraries included.
+/// Makes flock() fail with `error` during its lifetime, in the whole program including libraries.
 class NoLocks {
  public:
   explicit NoLocks(int error) { error_ = error; }

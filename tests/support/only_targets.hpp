@@ -1,5 +1,5 @@
 #pragma once
-/// Tests of vector kernels on every set of vector instructions of this processor.
+/// Tests of vector kernels on every vector target of this processor.
 
 #include <hwy/targets.h>
 
@@ -7,7 +7,7 @@
 
 namespace prostm::test {
 
-/// Limits kernels to these targets during its lifetime.
+/// Restricts kernels to these targets during its lifetime.
 class OnlyTargets {
  public:
   explicit OnlyTargets(std::int64_t targets) { set(targets); }
@@ -25,7 +25,7 @@ class OnlyTargets {
 /// Highway's one-lane fallback.
 inline constexpr std::int64_t kPlainTarget = HWY_EMU128 | HWY_SCALAR;
 
-/// Returns the targets of this processor, the best one in the lowest bit.
+/// Returns the targets of this processor, with the best one in the lowest bit.
 inline std::int64_t vector_targets() {
   return hwy::SupportedTargets() & HWY_TARGETS & ~kPlainTarget;
 }

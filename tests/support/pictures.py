@@ -1,11 +1,11 @@
-"""Pictures that tests of the program and of the Python module write."""
+"""Images written by tests of the program and of the Python module."""
 
 import struct
 import zlib
 
 
 def write_grey_png(path, grey):
-    """Writes a matrix of grey values (uint8, the top row first), or of pairs of grey and alpha, as a PNG picture."""
+    """Writes a matrix of grey values (uint8, top row first), or of pairs of grey and alpha, as a PNG image."""
 
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))

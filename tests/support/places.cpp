@@ -1,5 +1,5 @@
-// The only source that contains the checkout's path, so that a compiler cache serves other folders'
-// tests too.
+// The only source that contains the checkout's path, so that a compiler cache also serves tests
+// in other folders.
 #include "support/places.hpp"
 
 namespace prostm::test {

@@ -1,5 +1,5 @@
 #pragma once
-/// Paths of files in this checkout and beside it.
+/// Paths of files in and next to this checkout.
 
 #include <string>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Data outside of the project: tests that use it are skipped if it is missing.
+/// Data from outside the project: tests that use them are skipped if they are missing.
 
 #include <gtest/gtest.h>
 

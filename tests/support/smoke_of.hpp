@@ -7,7 +7,7 @@
 
 namespace prostm::test {
 
-/// A value a cell: x fastest, then y, then z.
+/// One value per cell: x fastest, then y, then z.
 inline std::vector<float> smoke_of(const Fluid& fluid) {
   std::vector<float> out;
   for (int k = 0; k < fluid.grid().nz; ++k) {

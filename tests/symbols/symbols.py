@@ -1,4 +1,4 @@
-"""The names that a program or a static library defines, and those that nothing shipped may define."""
+"""The names that a program or a static library defines, and names that nothing shipped may define."""
 
 import re
 import subprocess
@@ -9,7 +9,7 @@ FOREIGN = re.compile(r"\bprostm::(?:bench|test|tests)::|(?<![\w:])(?:testing|tes
 
 
 def foreign(names):
-    """Returns those of the demangled names that belong to the lab, benchmarks or tests."""
+    """Returns the demangled names that belong to the lab, benchmarks or tests."""
     return [name for name in names if FOREIGN.search(name)]
 
 

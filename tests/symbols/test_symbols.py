@@ -1,4 +1,4 @@
-"""The built program, and the libraries that are installed, hold no code of the lab, benchmarks or tests."""
+"""The built program and the installed libraries contain no code of the lab, benchmarks or tests."""
 
 import os
 import re
@@ -13,7 +13,7 @@ BUILD = Path(os.environ.get("PROSTM_BUILD", ROOT / "build" / "release"))
 
 
 def installed():
-    """Returns the names of the stages that cmake/install.cmake installs."""
+    """Returns the stages that cmake/install.cmake installs."""
     text = (ROOT / "cmake" / "install.cmake").read_text(encoding="utf-8")
     return " ".join(re.findall(r"^\s*prostm_install\(\w+ ([^)]*)\)", text, re.M)).split()
 
@@ -38,17 +38,17 @@ def test_names_of_the_lab_and_of_tests_are_found(name):
     "prostm::latest::at(int)",
     "boost::beast::test::fail_count::fail()",
 ])
-def test_names_of_stages_and_of_the_program_are_not(name):
+def test_names_of_stages_and_of_the_program_are_not_found(name):
     assert foreign([name]) == []
 
 
-def test_the_program_defines_nothing_of_them():
+def test_the_program_defines_no_such_names():
     names = defined(BUILD / "prostm")
     assert len(names) > 1000, "a program without names proves nothing"
     assert foreign(names) == []
 
 
-def test_the_library_defines_nothing_of_them():
+def test_the_library_defines_no_such_names():
     stages = installed()
     assert {"core", "plan", "device", "pipeline"} <= set(stages)
     for stage in stages:

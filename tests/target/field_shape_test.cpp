@@ -50,7 +50,7 @@ TEST(FieldShape, FindsFourBellsWithTheirBalanceAndSpacing) {
   EXPECT_NEAR(shape.saddle, 2.0 * std::exp(-0.5 * std::pow(26.0 / 12.0, 2)), 0.02);
 }
 
-TEST(FieldShape, OneBellHasItsAreaAndForceByTheirClosedForms) {
+TEST(FieldShape, OneBellHasItsClosedFormAreaAndForce) {
   const FieldShape shape = FieldShapeMeter().measure(bells({{{0.0, 0.0}, 0.08}}, 0.001));
   EXPECT_EQ(shape.count(), 1);
   EXPECT_EQ(shape.balance, 1.0);
@@ -59,19 +59,19 @@ TEST(FieldShape, OneBellHasItsAreaAndForceByTheirClosedForms) {
   EXPECT_NEAR(shape.force, 2.0 * kPi * kWidth * kWidth * 0.08, 1e-7);
 }
 
-TEST(FieldShape, ALowerBellCountsFromAThirdOfTheLargestOn) {
+TEST(FieldShape, ALowerBellCountsFromAThirdOfTheLargest) {
   EXPECT_EQ(FieldShapeMeter().measure(bells({{{-0.03, 0}, 1.0}, {{0.03, 0}, 0.36}})).count(), 2);
   EXPECT_EQ(FieldShapeMeter().measure(bells({{{-0.03, 0}, 1.0}, {{0.03, 0}, 0.34}})).count(), 1);
 }
 
-TEST(FieldShape, NothingHasNoShape) {
+TEST(FieldShape, AnEmptyFieldHasNoShape) {
   EXPECT_EQ(FieldShapeMeter().measure(TargetField()).count(), 0);
   const FieldShape flat = FieldShapeMeter().measure(bells({}));
   EXPECT_EQ(flat.count(), 0);
   EXPECT_EQ(flat.force, 0.0);
 }
 
-/// The highest level at which two maxima are in one region of the cells above it, by flooding anew
+/// The highest level at which two maxima are in one region of the cells above it, by flooding again
 /// at every level.
 double flooded_saddle(const TargetField& field, const FieldShape& shape) {
   std::vector<double> levels = field.pressure;
@@ -107,7 +107,7 @@ double flooded_saddle(const TargetField& field, const FieldShape& shape) {
   return 0.0;
 }
 
-TEST(FieldShape, SaddlesAreThoseOfASlowFloodOnRandomFields) {
+TEST(FieldShape, ValleysMatchASlowFloodOnRandomFields) {
   Random random(5);
   FieldShapeMeter meter;
   int several = 0;

@@ -30,14 +30,14 @@ TargetField palm(int rows, int cols) {
   return field;
 }
 
-// returns random islands of skin with random heights
+// Returns random islands of skin with random heights.
 TargetField islands(Random& random) {
   TargetField field;
   field.resize(1 + random.below(12), 1 + random.below(12));
   field.cell = 5e-3;
   const double share = random.uniform();
   for (std::size_t i = 0; i < field.size(); ++i) {
-    field.height[i] = 99.0;  // in cells without skin: must be overwritten
+    field.height[i] = 99.0;  // in cells without skin, to be overwritten
     if (random.uniform() < share) {
       field.skin[i] = 1;
       field.height[i] = random.uniform(-0.02, 0.02);
@@ -46,7 +46,7 @@ TargetField islands(Random& random) {
   return field;
 }
 
-TEST(TargetField, ResizeClearsAndAllocatesOnlyWhenItGrows) {
+TEST(TargetField, ResizeClearsAndAllocatesOnlyToGrow) {
   TargetField field = palm(6, 4);
   field.weight.assign(field.size(), 2.0);
   const test::HeapGuard guard;
@@ -78,7 +78,7 @@ struct Damage {
   const char* message;
 };
 
-TEST(Validate, NamesWhatIsWrong) {
+TEST(Validate, ReportsTheFault) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInf = std::numeric_limits<double>::infinity();
   const Damage damages[] = {
@@ -126,7 +126,7 @@ TEST(Validate, NamesWhatIsWrong) {
   weighted.weight.assign(12, 0.0);
   weighted.weight[5] = 1e-300;
   EXPECT_NO_THROW(validate(weighted));
-  // without skin no weight matters
+  // weights off the skin do not matter
   weighted.resize(3, 4);
   weighted.weight.assign(12, 0.0);
   EXPECT_NO_THROW(validate(weighted));
@@ -142,7 +142,7 @@ TEST(Validate, NamesWhatIsWrong) {
   }
 }
 
-TEST(TotalPressure, LooksAtSkinAlone) {
+TEST(TotalPressure, ConsidersOnlySkin) {
   TargetField field = palm(3, 4);
   const double all = std::accumulate(field.pressure.begin(), field.pressure.end(), 0.0);
   EXPECT_EQ(total_pressure(field), all);
@@ -150,7 +150,7 @@ TEST(TotalPressure, LooksAtSkinAlone) {
   EXPECT_EQ(total_pressure(field), all - 11.0);
 }
 
-TEST(MaxPressure, LooksAtSkinAlone) {
+TEST(MaxPressure, ConsidersOnlySkin) {
   TargetField field = palm(3, 4);
   EXPECT_EQ(max_pressure(field), 11.0);
   field.skin[11] = 0;
@@ -159,7 +159,7 @@ TEST(MaxPressure, LooksAtSkinAlone) {
   EXPECT_EQ(max_pressure(field), 0.0);
 }
 
-TEST(MaxWeight, LooksAtSkinAlone) {
+TEST(MaxWeight, ConsidersOnlySkin) {
   TargetField field = palm(3, 4);
   field.weight = field.pressure;
   EXPECT_EQ(max_weight(field), 11.0);

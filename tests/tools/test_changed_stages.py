@@ -1,4 +1,4 @@
-"""tools/changed_stages.py on small repositories: the stages that a change needs sanitizers and fuzzers for."""
+"""tools/changed_stages.py on small repositories: the stages for which a change needs sanitizers and fuzzers."""
 import shutil
 import subprocess
 import sys
@@ -46,16 +46,16 @@ def checkout(tmp_path):
     return Checkout(tmp_path)
 
 
-def test_a_change_asks_for_its_stage(checkout):
+def test_a_change_selects_its_stage(checkout):
     checkout.write("src/prostm/plan/plan.cpp")
     checkout.commit()
     assert checkout.stages(checkout.first) == sorted(ALWAYS + ["plan"])
     checkout.write("src/prostm/device/device.cpp")  # not committed
-    checkout.write("tests/core/new_test.cpp")  # not known to git
+    checkout.write("tests/core/new_test.cpp")  # untracked
     assert checkout.stages(checkout.first) == sorted(ALWAYS + ["plan", "device", "ultraleap", "core"])
 
 
-def test_what_no_sanitizer_looks_at_asks_for_the_few_that_always_run(checkout):
+def test_files_outside_the_sanitizers_select_only_what_always_runs(checkout):
     checkout.write("docs/design/index.md", "web/src/main.ts", "tests/python/test_am.py", "tests/library/test_library.py")
     checkout.commit()
     assert checkout.stages(checkout.first) == ALWAYS
@@ -63,13 +63,13 @@ def test_what_no_sanitizer_looks_at_asks_for_the_few_that_always_run(checkout):
 
 @pytest.mark.parametrize("path", ["CMakeLists.txt", "tests/support/main.cpp", "tools/fuzz.sh", "run", "fuzz/a_fuzz.cpp",
                                   "src/prostm/fields/fields.cpp"])
-def test_what_belongs_to_all_asks_for_all(checkout, path):
+def test_shared_files_select_all_stages(checkout, path):
     checkout.write("src/prostm/plan/plan.cpp", path)
     checkout.commit()
     assert checkout.stages(checkout.first) == []
 
 
-def test_a_commit_that_is_no_ancestor_asks_for_all(checkout):
+def test_a_commit_that_is_not_an_ancestor_selects_all_stages(checkout):
     checkout.git("checkout", "-q", "-b", "other")
     checkout.write("src/prostm/core/core.cpp")
     other = checkout.commit()

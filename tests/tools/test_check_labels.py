@@ -1,4 +1,4 @@
-"""The check of labels itself: it finds labels that are defined twice, or cited and defined nowhere."""
+"""Tests the check of labels: it finds labels that are defined twice, or cited without a definition."""
 
 import re
 import shutil
@@ -30,7 +30,7 @@ def tree(tmp_path):
     ("docs/guides/a.md", "\n(M1) to (M5) of design\n"),
     ("docs/guides/a.md", "\n- (M2) is defined in no page of the design\n"),
 ])
-def test_finds_labels_that_are_defined_nowhere(tree, name, text):
+def test_finds_labels_without_a_definition(tree, name, text):
     status, [line] = check_with(tree, name, text)
     assert status == 1 and line.startswith(f"{name}:2: (M") and line.endswith("is defined nowhere in docs/design")
 
@@ -45,11 +45,11 @@ def test_finds_a_label_that_is_defined_twice(tree):
     "/// (M1) and (M4a).\n",
     "f(A), f(M), (a1), (MM1), [M1], (M123)\n",
 ])
-def test_leaves_other_text_alone(tree, text):
+def test_ignores_other_text(tree, text):
     assert check_with(tree, "src/prostm/plan/a.hpp", text) == (0, [])
 
 
-def test_a_label_that_is_removed_from_the_design_is_missed(tmp_path):
+def test_detects_a_label_removed_from_the_design(tmp_path):
     shutil.copytree(ROOT / "docs/design", tmp_path / "docs/design")
     shutil.copytree(ROOT / "src", tmp_path / "src")
     assert check(TOOL, tmp_path) == (0, [])

@@ -1,4 +1,4 @@
-"""The layer check itself: it finds violations, and accepts a tree that keeps the rules."""
+"""Tests the check of layers: it finds violations, and accepts a tree that keeps the rules."""
 
 import subprocess
 import sys
@@ -36,7 +36,7 @@ GOOD = {
 
 @pytest.fixture
 def tree(tmp_path):
-    """Returns a function that writes files into a tree that keeps every rule, and returns its root."""
+    """Returns a function that writes files into a tree that keeps all rules, and returns its root."""
 
     def write(files=()):
         for name, text in {**GOOD, **dict(files)}.items():
@@ -104,7 +104,7 @@ def test_accepts_a_tree_that_keeps_the_rules(tree):
     ("src/prostm/plan/planner.cpp.bak", "\n", 1, "old copy"),
     ("docs/design_old.md", "\n", 1, "old copy"),
 ])
-def test_finds_each_violation_where_it_is(tree, name, text, line, word):
+def test_finds_each_violation_at_its_place(tree, name, text, line, word):
     status, lines = check(TOOL, tree([(name, text)]))
     assert status == 1
     assert len(lines) == 1, lines
@@ -118,7 +118,7 @@ def test_finds_every_violation_of_a_file(tree):
     assert [line.split(":")[1] for line in lines] == ["1", "2", "3"]
 
 
-def test_a_program_may_include_what_the_linked_stages_link(tree):
+def test_a_program_may_include_stages_linked_indirectly(tree):
     files = [("apps/prostm/a.cpp", '#include "prostm/plan/plan.hpp"\n#include "prostm/core/units.hpp"\n#include "options.hpp"\n'),
              ("apps/prostm/options.hpp", ""), ("apps/prostm/run/a.cpp", '#include "options.hpp"\n#include "b.hpp"\n'),
              ("apps/prostm/run/b.hpp", "")]

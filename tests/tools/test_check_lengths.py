@@ -1,4 +1,4 @@
-"""The length check itself: it counts a function's lines in any context, and recognises other braces."""
+"""Tests the check of lengths: it counts a function's lines in any context, and recognises other braces."""
 
 import subprocess
 import sys
@@ -13,7 +13,7 @@ LINE = "  f();\n"
 
 
 def check(root, name="src/prostm/plan/a.cpp", text=""):
-    """Returns the exit status and the lines that the tool prints about a tree of one file."""
+    """Returns the exit status and the output lines of the tool for a tree of one file."""
     return check_file(TOOL, root, name, text)
 
 
@@ -59,7 +59,7 @@ def test_a_file_has_at_most_450_lines(tmp_path, name):
     assert check(tmp_path, name, "\n" * 451) == (1, [f"{name}:1: 451 lines: at most 450"])
 
 
-def test_other_folders_are_not_looked_at(tmp_path):
+def test_other_folders_are_ignored(tmp_path):
     (tmp_path / "src").mkdir()
     assert check(tmp_path, "tests/plan/a_test.cpp", "void f() {\n" + 59 * LINE + "}\n")[0] == 0
 

@@ -1,4 +1,4 @@
-"""The check of links itself: it finds what leads nowhere, and leaves links alone that lead somewhere."""
+"""Tests the check of links: it finds broken links, and accepts valid ones."""
 
 import sys
 from functools import partial
@@ -35,7 +35,7 @@ def tree(tmp_path):
     ("\n\n[key]: missing.md\n", 3),
     ('<img src="missing.png">\n', 1),
 ])
-def test_finds_what_leads_nowhere(tree, text, line):
+def test_finds_broken_links(tree, text, line):
     status, lines = check_page(tree, "docs/page.md", text)
     assert status == 1
     assert [found.rsplit(":", 1)[0] for found in lines] == [f"docs/page.md:{line}"]
@@ -49,7 +49,7 @@ def test_finds_what_leads_nowhere(tree, text, line):
     "```md\n[code](missing.md)\n```\n",
     "a source [P-1, section 2] (in brackets)\n",
 ])
-def test_leaves_links_alone_that_lead_somewhere(tree, text):
+def test_accepts_valid_links(tree, text):
     assert check_page(tree, "docs/page.md", text) == (0, [])
 
 

@@ -1,4 +1,4 @@
-"""The check by Vale: a stand-in for Vale tells what it is called with."""
+"""Tests the check by Vale, with a stand-in for Vale that prints its arguments."""
 
 import os
 import subprocess
@@ -10,7 +10,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def check(tmp_path, vale, script=None):
-    """Returns the exit status and output of check_prose.sh, where $VALE is `vale` with the script in it."""
+    """Returns the exit status and output of check_prose.sh, with `vale` as $VALE and the script in it."""
     program = tmp_path / "vale"
     if script:
         program.write_text(f"#!/bin/bash\n{script}\n")
@@ -29,11 +29,11 @@ def test_vale_reads_documents_and_headers_with_our_rules(tmp_path):
     assert not [line for line in lines if line.endswith(".cpp")]
 
 
-def test_what_vale_finds_fails_the_check(tmp_path):
+def test_findings_of_vale_fail_the_check(tmp_path):
     assert check(tmp_path, vale=True, script="echo README.md:1:1:prostm.Wordy:found; exit 1")[0] == 1
 
 
-def test_without_vale_it_says_so_and_succeeds(tmp_path):
+def test_without_vale_it_reports_so_and_succeeds(tmp_path):
     if (ROOT / "build" / "tools" / "vale").exists():
         pytest.skip("Vale is in build/tools")
     status, told = check(tmp_path, vale=False)

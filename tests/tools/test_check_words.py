@@ -1,4 +1,4 @@
-"""The check of words itself: it finds the old idiom, leaves plain English alone, and reads the rules of Vale."""
+"""Tests the check of words: it finds the old idiom, accepts plain English, and reads the rules of Vale."""
 
 import sys
 from functools import partial
@@ -46,7 +46,7 @@ def test_finds_the_old_idiom(tmp_path, name, text):
     ("web/node_modules/a/README.md", "x" * 130 + "\n"),
     ("build/release/a.md", "x" * 130 + "\n"),
 ])
-def test_leaves_plain_english_alone(tmp_path, name, text):
+def test_accepts_plain_english(tmp_path, name, text):
     assert check(tmp_path, name, text) == (0, [])
 
 
@@ -65,7 +65,7 @@ def test_a_rule_names_its_line_and_the_better_word(tmp_path):
     (RULE + "tokens: [a]\nscope: heading\n", "no key 'scope'"),
     (RULE.replace("existence", "spelling") + "tokens: [a]\n", "no rule 'spelling'"),
 ])
-def test_a_rule_that_it_cannot_apply_is_an_error(tmp_path, text, says):
+def test_an_unsupported_rule_is_an_error(tmp_path, text, says):
     (tmp_path / "a.yml").write_text(text)
     with pytest.raises(ValueError, match=says):
         read_rules(tmp_path)

@@ -1,4 +1,4 @@
-"""The public workflow and the hooks before a commit: each is well formed, and the commands that it calls exist."""
+"""The public workflow and the pre-commit hooks: each is well formed, and the commands that it calls exist."""
 
 import itertools
 import json
@@ -23,7 +23,7 @@ def read(path):
 
 
 def matrices_of(job):
-    """The values of each combination of a job's matrix, by the names that steps give them: matrix.compiler.cc."""
+    """The values of each combination of a job's matrix, by the names used in steps: matrix.compiler.cc."""
     matrix = job.get("strategy", {}).get("matrix", {})
     for values in itertools.product(*matrix.values()):
         names = {}
@@ -34,7 +34,7 @@ def matrices_of(job):
 
 
 def commands_of(path):
-    """The commands of a workflow's steps, as each combination of the matrix runs them."""
+    """The commands of a workflow's steps, as run by each combination of the matrix."""
     for job in read(path)["jobs"].values():
         for names in matrices_of(job):
             for step in job["steps"]:
@@ -43,7 +43,7 @@ def commands_of(path):
 
 
 def check_command(command):
-    """Asserts that ./run knows what the command asks of it, that scripts exist, and that presets do."""
+    """Asserts that ./run has the command with its options, and that scripts and presets exist."""
     words = command.split()
     if words[0] == "./run":
         done = subprocess.run(["bash", "-c", '. ./run; usage; echo "${!parts_of_full[@]}"'], cwd=ROOT, text=True,
@@ -70,7 +70,7 @@ def test_commands_of_a_workflow_exist(path):
 
 @pytest.mark.parametrize("command", ["./run fly", "./run test --full --only=ubsan", "./run test --fast", "tools/none.sh",
                                      "cmake --workflow --preset none"])
-def test_a_command_that_does_not_exist_is_found(command):
+def test_a_missing_command_is_found(command):
     with pytest.raises(AssertionError):
         check_command(command)
 
@@ -83,7 +83,7 @@ def test_a_workflow_runs_every_part_of_full():
 
 
 def test_parts_of_full_name_its_tests():
-    """Each entry that tests/full adds to the release build's tests is of one part, except random_targets."""
+    """Each entry that tests/full adds to the release build's tests belongs to one part, except random_targets."""
     lists = (ROOT / "tests" / "full" / "CMakeLists.txt").read_text()
     entries = {re.sub(r"\$\{.*?\}", "x", name) for name in re.findall(r"add_test\(NAME (\S+)", lists)}
     patterns = re.findall(r"\[\w+\]='(.*?)'", (ROOT / "run").read_text())
@@ -91,7 +91,7 @@ def test_parts_of_full_name_its_tests():
         assert sum(bool(re.search(pattern, entry)) for pattern in patterns) == 1, entry
 
 
-def test_hooks_are_ours_and_exist():
+def test_hooks_are_local_and_exist():
     for repository in read(HOOKS)["repos"]:
         assert repository["repo"] == "local"
         for hook in repository["hooks"]:

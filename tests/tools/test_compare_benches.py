@@ -1,4 +1,4 @@
-"""The guard of the benchmarks: it finds slower rows, and does not mistake noise for them."""
+"""The comparison of benchmarks: it finds slower rows, and does not mistake noise for them."""
 
 import json
 import subprocess
@@ -22,7 +22,7 @@ pathlib.Path(sys.argv[sys.argv.index("--json") + 1]).write_text(json.dumps(rows)
 
 @pytest.fixture
 def build(tmp_path):
-    """Returns a function that makes a build folder with one benchmark of the rows (name, unit, times)."""
+    """Returns a function that creates a build folder with one benchmark of the rows (name, unit, times)."""
 
     def make(name, *rows):
         folder = tmp_path / name
@@ -45,7 +45,7 @@ STEADY = [10.0, 10.02, 9.99, 10.01, 10.0]
 NOISY = [10.0, 13.0, 9.0, 12.0, 10.0]
 
 
-def test_the_same_times_are_not_slower(build):
+def test_equal_times_are_not_slower(build):
     status, verdicts, text = compare(build("a", ("f", "us", STEADY)), build("b", ("f", "us", STEADY)), "contact")
     assert (status, verdicts) == (0, {"f": "%"}), text
     assert "0 of 1 rows are slower by more than 3 %" in text
@@ -58,18 +58,18 @@ def test_a_row_fails_when_it_is_slower_than_the_bound(build, factor, status, ver
     assert found[:2] == (status, {"f": verdict, "g": "%"}), found[2]
 
 
-def test_the_bound_can_be_given(build):
+def test_the_bound_is_an_option(build):
     builds = build("a", ("f", "us", STEADY)), build("b", ("f", "us", [1.1 * time for time in STEADY]))
     assert compare(*builds, "contact", "--bound", 20)[0] == 0
 
 
-def test_what_noise_explains_is_marked_and_does_not_fail(build):
+def test_differences_within_the_noise_are_marked_and_do_not_fail(build):
     builds = build("a", ("f", "us", NOISY)), build("b", ("f", "us", [1.1 * time for time in NOISY]))
     status, verdicts, text = compare(*builds, "contact")
     assert (status, verdicts) == (0, {"f": "slower?"}), text
 
 
-def test_rows_that_are_no_times_or_of_one_build_alone_are_not_compared(build, tmp_path):
+def test_rows_without_times_or_in_one_build_only_are_ignored(build, tmp_path):
     one = build("a", ("f", "us", STEADY), ("error", "1", [1.0]), ("gone", "us", STEADY))
     other = build("b", ("f", "us", STEADY), ("error", "1", [9.0]), ("new", "us", [99.0]))
     status, verdicts, _ = compare(one, other, "contact", "--json", tmp_path / "rows.json")

@@ -1,4 +1,4 @@
-"""The pages for contributors: the files that they name exist, and so do the commands."""
+"""The pages for contributors: the files and commands that they name exist."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,7 @@ PAGES = ["CONTRIBUTING.md", "SECURITY.md"]
 
 
 def named_in(page):
-    """All that stands in `…` on a page."""
+    """All texts in `…` on a page."""
     return re.findall(r"`([^`\n]+)`", (ROOT / page).read_text(encoding="utf-8"))
 
 
@@ -21,7 +21,7 @@ def test_the_files_that_a_page_names_exist(page):
     for name in named_in(page):
         path = name.split()[0]
         if path.startswith(folders):
-            place = re.sub(r"[^/]*[A-Z].*", "", path)  # tests/STAGE/ is of each stage
+            place = re.sub(r"[^/]*[A-Z].*", "", path)  # tests/STAGE/ stands for each stage
             assert (ROOT / place).exists(), f"{page} names {path}: revise its row"
 
 
@@ -32,8 +32,8 @@ def test_the_commands_that_a_page_names_exist(page):
             check_command(" ".join(word for word in name.split() if word not in ("-R", "plan")))
 
 
-def test_names_in_the_table_are_those_of_the_code():
-    """Each word that looks like a type or function of C++ stands in a file that its row names."""
+def test_names_in_the_table_exist_in_the_code():
+    """Each word that looks like a C++ type or function occurs in a file named in its row."""
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     for row in re.findall(r"^\| (?:device|array|preset|world|metric|study task|setting) .*$", text, re.M):
         names = re.findall(r"`([^`]+)`", row)

@@ -1,4 +1,4 @@
-"""The picture of the layers: it is that of CMakeLists.txt, and shows each stage and each essential link once."""
+"""The figure of the layers: it matches CMakeLists.txt, and shows each stage and each essential link once."""
 
 import sys
 import xml.etree.ElementTree as ET
@@ -12,7 +12,7 @@ from check_layers import read_layers, reachable  # noqa: E402
 SVG = "{http://www.w3.org/2000/svg}"
 
 
-def test_the_picture_in_docs_is_up_to_date():
+def test_the_figure_in_docs_is_up_to_date():
     assert draw_layers.PICTURE.read_text(encoding="utf-8") == draw_layers.draw(), "run tools/draw_layers.py"
 
 
@@ -25,14 +25,14 @@ def test_it_shows_every_stage_and_every_essential_link():
     assert len(arrows) == sum(map(len, draw_layers.essential(layers).values()))
 
 
-def test_links_that_follow_from_others_are_left_out():
+def test_implied_links_are_omitted():
     layers = {"core": [], "plan": ["core"], "emit": ["plan", "core"], "score": ["plan", "emit"]}
     links = draw_layers.essential(layers)
     assert links == {"core": [], "plan": ["core"], "emit": ["plan"], "score": ["emit"]}
     assert all(reachable(links, [stage]) == reachable(layers, [stage]) for stage in layers)
 
 
-def test_boxes_neither_overlap_nor_leave_the_picture():
+def test_boxes_neither_overlap_nor_leave_the_figure():
     picture = ET.fromstring(draw_layers.draw())
     width, height = map(float, picture.get("viewBox").split()[2:])
     boxes = [[float(rect.get(key)) for key in ("x", "y", "width", "height")] for rect in picture.iter(SVG + "rect")]

@@ -1,4 +1,4 @@
-"""The measures of the layout: they find what is too large or cyclic, and this repository keeps the bounds."""
+"""The measures of the layout: they find large folders and cycles, and this repository keeps the bounds."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""The scripts that fit models of participants to a tidy table: closed forms of balanced tables."""
+"""The scripts that fit models of participants to a tidy table, compared with closed forms for balanced tables."""
 
 import math
 import re
@@ -49,14 +49,14 @@ COUNTS = {"pro-stm": {"one": [14, 15, 17, 12, 18, 9], "four": [11, 16, 15, 10, 1
           "am": {"one": [8, 11, 13, 14, 10, 9], "four": [12, 9, 10, 16, 11, 8]}}
 
 
-def test_odds_ratios_of_a_balanced_table_are_those_of_its_counts(python, tmp_path):
+def test_odds_ratios_of_a_balanced_table_follow_from_its_counts(python, tmp_path):
     done = python(write(tmp_path / "tidy.csv", COUNTS))
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("480 answers of 12 participants\n")
     rows = {name: tuple(map(float, numbers)) for name, *numbers, _ in ROW.findall(done.stdout)}
     one, four = (odds(COUNTS["pro-stm"][scene]) for scene in ("one", "four"))
     am_one, am_four = (odds(COUNTS["am"][scene]) for scene in ("one", "four"))
-    # over the method and scene that come first
+    # relative to the method and scene that come first
     expected = {"Intercept": one, "method[T.am]": am_one / one, "scene[T.four]": four / one,
                 "method[T.am]:scene[T.four]": (am_four / four) / (am_one / one)}
     assert rows.keys() == expected.keys()
@@ -65,7 +65,7 @@ def test_odds_ratios_of_a_balanced_table_are_those_of_its_counts(python, tmp_pat
         assert low < ratio < high
 
 
-def test_intervals_are_those_of_people_not_of_answers(python, tmp_path):
+def test_intervals_reflect_people_not_answers(python, tmp_path):
     # people who are nearly always right, or nearly always wrong
     alike = {"am": {"x": [1, 19, 2, 18, 1, 18]}, "pro-stm": {"x": [19, 19, 2, 19, 1, 19]}}
     done = python(write(tmp_path / "tidy.csv", alike))
@@ -76,19 +76,19 @@ def test_intervals_are_those_of_people_not_of_answers(python, tmp_path):
     assert math.log(float(high) / float(low)) > 2.5 * 2 * 1.96 * math.sqrt(of_answers)
 
 
-def test_one_method_in_one_scene_has_an_intercept_alone(python, tmp_path):
+def test_one_method_in_one_scene_has_only_an_intercept(python, tmp_path):
     done = python(write(tmp_path / "tidy.csv", {"am": {"x": [8, 11, 13]}}))
     assert [row[0] for row in ROW.findall(done.stdout)] == ["Intercept"], done.stderr
 
 
-def test_a_table_without_what_is_needed_is_refused(python, tmp_path):
+def test_a_table_without_required_columns_is_rejected(python, tmp_path):
     (tmp_path / "a.csv").write_text("participant,method,correct\r\n1,am,1\r\n")
     for name, words in (("a.csv", "has no column scene"), ("none.csv", "none.csv")):
         done = python(tmp_path / name)
         assert done.returncode == 2 and words in done.stderr and done.stderr.count("\n") == 1
 
 
-def test_the_mixed_model_of_people_who_are_alike_is_that_of_their_counts(tmp_path):
+def test_the_mixed_model_of_identical_people_follows_from_their_counts(tmp_path):
     if shutil.which("Rscript") is None:
         pytest.skip("needs Rscript with the package lme4 (apt: r-cran-lme4)")
     needs(["Rscript", "-e", "library(lme4)"], "the package lme4 of R (apt: r-cran-lme4)")

@@ -42,7 +42,7 @@ TEST(CalibrationGuide, LeadsFromMarkToMarkToThePose) {
   for (int mark = 0; mark < 4; ++mark) {
     const CalibrationMark& at = guide.marks()[static_cast<std::size_t>(mark)];
     EXPECT_THAT(guide.sentence(), HasSubstr("Touch " + at.name));
-    // the tracker's view of a finger whose flesh lies on the mark, with 1 mm of noise
+    // the tracker's view of a finger whose flesh touches the mark, with 1 mm of noise
     const double flesh = pointing(Vec3::Zero()).hands[0].radius[kIndexTip];
     const Vec3 tip = X_DT.inverse() * (at.p_D + flesh * Vec3::UnitZ());
     time += 10.0;
@@ -60,12 +60,12 @@ TEST(CalibrationGuide, LeadsFromMarkToMarkToThePose) {
   EXPECT_LT((guide.result()->X_DT.translation() - X_DT.translation()).norm(), 0.002);
   EXPECT_LT((guide.result()->X_DT.linear() - X_DT.linear()).norm(), 0.02);
   EXPECT_THAT(guide.sentence(), HasSubstr("mm rms"));
-  // taking a mark again requires a new solution
+  // taking a mark again requires solving again
   EXPECT_EQ(guide.take(0), "");
   EXPECT_FALSE(guide.result());
 }
 
-TEST(CalibrationGuide, TakesOnlyOneFingerThatRests) {
+TEST(CalibrationGuide, AcceptsOnlyOneFingerAtRest) {
   CalibrationGuide guide(kTransducers);
   EXPECT_THAT(guide.take(4), HasSubstr("there is no mark 4"));
   EXPECT_THAT(guide.take(-1), HasSubstr("there is no mark"));
@@ -76,7 +76,7 @@ TEST(CalibrationGuide, TakesOnlyOneFingerThatRests) {
   EXPECT_THAT(guide.take(0), HasSubstr("two hands"));
   guide.watch(1.1, pointing(Vec3::Zero(), 0));
   EXPECT_THAT(guide.take(0), HasSubstr("no hand"));
-  // earlier frames do not count
+  // earlier frames are ignored
   for (int i = 0; i < 3; ++i) guide.watch(1.2 + 0.02 * i, pointing(Vec3::Zero()));
   EXPECT_THAT(guide.take(0), HasSubstr("long enough"));
   for (int i = 0; i < 10; ++i) guide.watch(1.3 + 0.02 * i, pointing(Vec3::Zero()));

@@ -71,7 +71,7 @@ TEST(Calibration, ThreePointsAreEnoughAlsoInAPlaneOfTheArray) {
   EXPECT_LT((calibrate(points).X_DT.matrix() - X_DT.matrix()).norm(), 1e-9);
 }
 
-TEST(Calibration, NoiseIsAveragedAndTold) {
+TEST(Calibration, NoiseIsAveragedAndReported) {
   Random random(3);
   constexpr double kNoise = 0.002;
   double rms = 0.0, worst_move = 0.0;
@@ -102,7 +102,7 @@ TEST(Calibration, NoiseInThreePointsOfAPlaneNeverMirrors) {
   }
 }
 
-TEST(Calibration, RefusesWhatGivesNoPose) {
+TEST(Calibration, RejectsPointsThatDoNotDetermineAPose) {
   Random random(5);
   const Pose X_DT = random_pose(random);
   auto points = pairs(X_DT, 2, 0.0, random);

@@ -21,7 +21,7 @@ HandFrame frame_at(double time, const Vec3& p, std::int64_t id = 1) {
   return frame;
 }
 
-/// Returns a recording of linear motion, seen at irregular times.
+/// Returns a recording of linear motion, sampled at irregular times.
 HandRecording linear_recording(const Vec3& velocity, int frames) {
   Random random(4);
   HandRecording recording;
@@ -56,7 +56,7 @@ TEST(CausalTrack, ConstantVelocityAtIrregularTimesIsPredictedExactly) {
   }
 }
 
-TEST(CausalTrack, WithoutPredictionTheNewestFrameHolds) {
+TEST(CausalTrack, WithoutPredictionTheNewestFrameIsHeld) {
   TrackSettings settings;
   settings.prediction = 0.0;
   CausalTrack track(settings);
@@ -113,7 +113,7 @@ TEST(CausalTrack, HandsComeAndGoAndShortGapsAreBridged) {
   EXPECT_TRUE(out.hands.empty());
   EXPECT_EQ(out.age, 0.0);
   for (int i = 0; i < 5; ++i) track.add(frame_at(0.01 * i, Vec3(0.01 * i, 0, 0)));
-  // frames without the hand: it stays for max_gap
+  // frames without the hand: it remains for max_gap
   for (int i = 5; i < 20; ++i) {
     nothing.time = 0.01 * i;
     EXPECT_TRUE(track.add(nothing));
@@ -131,7 +131,7 @@ TEST(CausalTrack, HandsComeAndGoAndShortGapsAreBridged) {
   EXPECT_TRUE(out.hands.empty());
 }
 
-TEST(CausalTrack, ANewIdOfTheSameSideTakesTheLostOnesPlace) {
+TEST(CausalTrack, ANewIdOfTheSameSideReplacesTheLostOne) {
   CausalTrack track{TrackSettings()};
   HandFrame frame, out;
   for (int i = 0; i < 4; ++i) {
@@ -139,21 +139,21 @@ TEST(CausalTrack, ANewIdOfTheSameSideTakesTheLostOnesPlace) {
     frame.hands.push_back(hand_at(6, Vec3(0.2, 0, 0), Side::Left));
     track.add(frame);
   }
-  // the right hand is lost and found again as number 9
+  // the right hand is lost and detected again as number 9
   frame = frame_at(0.04, Vec3(0.01, 0, 0), 9);
   frame.hands.push_back(hand_at(6, Vec3(0.2, 0, 0), Side::Left));
   track.add(frame);
   track.sample(0.04, out);
   ASSERT_EQ(out.hands.size(), 2u);
   EXPECT_EQ(out.hands[0].id + out.hands[1].id, 15);
-  // a new right hand alone leaves the left one to its gap
+  // a new right hand does not shorten the left one's gap
   track.add(frame_at(0.05, Vec3(0.01, 0, 0), 10));
   track.sample(0.05, out);
   ASSERT_EQ(out.hands.size(), 2u);
   EXPECT_EQ(out.hands[0].id + out.hands[1].id, 16);
 }
 
-TEST(CausalTrack, RefusesTimeThatDoesNotIncreaseAndForgetsWhenTold) {
+TEST(CausalTrack, RejectsTimeThatDoesNotIncreaseAndCanBeReset) {
   CausalTrack track{TrackSettings()};
   EXPECT_TRUE(track.add(frame_at(1.0, Vec3::Zero())));
   EXPECT_FALSE(track.add(frame_at(1.0, Vec3(1, 0, 0))));
@@ -168,7 +168,7 @@ TEST(CausalTrack, RefusesTimeThatDoesNotIncreaseAndForgetsWhenTold) {
 }
 
 TEST(CausalTrack, AnySequenceGivesFiniteBoundedHands) {
-  // frames from a nanosecond to a tenth of a second apart, hands of any two ids anywhere
+  // frames from a nanosecond to a tenth of a second apart, hands with any two ids anywhere
   const TrackSettings settings;
   CausalTrack track(settings);
   Random random(8);
@@ -196,7 +196,7 @@ TEST(CausalTrack, AnySequenceGivesFiniteBoundedHands) {
   }
 }
 
-TEST(CausalTrack, AllocatesNothing) {
+TEST(CausalTrack, DoesNotAllocate) {
   CausalTrack track{TrackSettings()};
   HandFrame out;
   test::HeapGuard guard;
@@ -207,7 +207,7 @@ TEST(CausalTrack, AllocatesNothing) {
   EXPECT_EQ(guard.allocations(), 0u);
 }
 
-TEST(CausalTrack, RefusesSettingsOutsideTheirBounds) {
+TEST(CausalTrack, RejectsSettingsOutOfBounds) {
   for (const double bad : {-0.001, 0.3}) {
     TrackSettings settings;
     settings.prediction = bad;
@@ -218,7 +218,7 @@ TEST(CausalTrack, RefusesSettingsOutsideTheirBounds) {
   }
 }
 
-TEST(ReplayedHand, KnowsOnlyTheFramesThatHaveComeIn) {
+TEST(ReplayedHand, UsesOnlyFramesThatHaveArrived) {
   TrackSettings settings;
   settings.prediction = 0.0;
   const HandRecording recording = linear_recording(Vec3(1.0, 0, 0), 60);
@@ -240,7 +240,7 @@ TEST(ReplayedHand, KnowsOnlyTheFramesThatHaveComeIn) {
   }
 }
 
-TEST(ReplayedHand, LoopsAsAHandThatLeavesAndComesBackAsAnother) {
+TEST(ReplayedHand, LoopsLikeAHandThatLeavesAndReturnsAsAnother) {
   const TrackSettings settings;
   const auto source =
       make_replayed_hand(linear_recording(Vec3(0.1, 0, 0), 40), settings, true, 0.02);
@@ -265,7 +265,7 @@ TEST(ReplayedHand, LoopsAsAHandThatLeavesAndComesBackAsAnother) {
   EXPECT_NEAR(seams, 20.0 / (length + settings.max_gap + 0.04), 1.0);
 }
 
-TEST(ReplayedHand, SeeksWithTheFramesJustBefore) {
+TEST(ReplayedHand, SeeksWithThePrecedingFrames) {
   TrackSettings settings;
   settings.prediction = 0.0;
   const auto source =

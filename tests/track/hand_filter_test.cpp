@@ -54,13 +54,13 @@ Noise noise_of(const TrackSettings& track) {
   return noise;
 }
 
-TEST(HandFilter, TakesTheNoiseOutOfAStillHand) {
+TEST(HandFilter, RemovesTheNoiseOfAHandAtRest) {
   TrackSettings open;
   open.filter_position = open.filter_velocity = 1.0;
   const Noise raw = noise_of(open), filtered = noise_of({});
   RecordProperty("position_noise_ratio", std::to_string(filtered.position / raw.position));
   RecordProperty("velocity_noise_ratio", std::to_string(filtered.velocity / raw.velocity));
-  // the air reacts to changes of the skin's velocity, so these must be filtered out
+  // the air reacts to changes of the skin's velocity, so these must be filtered
   EXPECT_LT(filtered.velocity_step, 0.25 * raw.velocity_step);
   EXPECT_LT(filtered.velocity, 0.45 * raw.velocity);
   EXPECT_LT(filtered.position_step, 0.45 * raw.position_step);
@@ -102,7 +102,7 @@ TEST(HandFilter, OpensForFastMotion) {
   EXPECT_LT(lag, 0.004);
 }
 
-TEST(HandFilter, ANewHandStartsUnfilteredAndAHandThatWasGoneIsNew) {
+TEST(HandFilter, ANewHandStartsUnfilteredAndAReturningHandIsNew) {
   HandFilter filter{TrackSettings()};
   const auto frame_of = [](std::int64_t id, double x) {
     HandFrame frame;
@@ -128,7 +128,7 @@ TEST(HandFilter, ANewHandStartsUnfilteredAndAHandThatWasGoneIsNew) {
   EXPECT_EQ(frame.hands[0].position[kPalm].x(), 0.5);
 }
 
-TEST(HandFilter, AllocatesNothing) {
+TEST(HandFilter, DoesNotAllocate) {
   ScriptedHandSettings settings;
   settings.jitter = 3e-4;
   const auto source = make_scripted_hand(settings, {});
@@ -142,7 +142,7 @@ TEST(HandFilter, AllocatesNothing) {
   EXPECT_EQ(guard.allocations(), 0u);
 }
 
-TEST(HandFilter, RefusesFactorsOutsideTheirBounds) {
+TEST(HandFilter, RejectsFactorsOutOfBounds) {
   for (const double bad : {0.0, -0.1, 1.5}) {
     TrackSettings settings;
     settings.filter_position = bad;

@@ -8,7 +8,7 @@
 namespace prostm {
 namespace {
 
-TEST(HandFrame, JointNamesAreOpenXrsAndDistinct) {
+TEST(HandFrame, JointNamesMatchOpenXrAndAreDistinct) {
   EXPECT_EQ(joint_name(kPalm), "palm");
   EXPECT_EQ(joint_name(kThumbDistal), "thumb-distal");
   EXPECT_EQ(joint_name(kLittleTip), "little-tip");
@@ -19,14 +19,14 @@ TEST(HandFrame, JointNamesAreOpenXrsAndDistinct) {
   EXPECT_EQ(joint_name(kJointCount), "none");
 }
 
-TEST(HandFrame, DefaultPoseTurnsUpOfTheTrackerIntoOutOfTheArray) {
+TEST(HandFrame, TheDefaultPoseMapsUpInTheTrackerToAwayFromTheArray) {
   const Pose X_DT = default_tracker_pose();
   EXPECT_TRUE((X_DT * Vec3(1, 2, 3)).isApprox(Vec3(1, -3, 2)));
   EXPECT_NEAR(X_DT.linear().determinant(), 1.0, 1e-15);
   EXPECT_TRUE((ultraleap_kit_pose() * Vec3(1, 2, 3)).isApprox(Vec3(1, -2.879, 2)));
 }
 
-TEST(HandFrame, ToDeviceMovesPositionsVelocitiesAndOrientations) {
+TEST(HandFrame, ToDeviceTransformsPositionsVelocitiesAndOrientations) {
   HandFrame frame;
   frame.hands.emplace_back();
   Hand& hand = frame.hands[0];

@@ -24,7 +24,7 @@ HandFrame frame_at(double time, std::initializer_list<Hand> hands) {
   return frame;
 }
 
-/// Shows a tracker's hands to a HandWatch, frame by frame at 100 Hz.
+/// Passes a tracker's hands to a HandWatch, frame by frame at 100 Hz.
 class Watched {
  public:
   explicit Watched(const TrackSettings& settings = {}) : watch(settings) {}
@@ -53,7 +53,7 @@ class Watched {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(HandWatch, AHandThatDoesNotMoveAtAllIsNotTakenUntilItMoves) {
+TEST(HandWatch, AHandWithoutAnyMotionIsRejectedUntilItMoves) {
   Watched watched;
   for (int i = 0; i < 50; ++i) ASSERT_THAT(watched.take({hand_at(1, kPlace)}), ElementsAre(1)) << i;
   EXPECT_EQ(watched.status().sentence, "connected");
@@ -84,7 +84,7 @@ TEST(HandWatch, TheNoiseOfATrackerAndOneJointAreMotion) {
   }
 }
 
-TEST(HandWatch, TheHandBesideAFrozenOneIsTaken) {
+TEST(HandWatch, TheHandNextToAFrozenOneIsAccepted) {
   Watched watched;
   for (int i = 0; i < 100; ++i) {
     const Hand frozen = hand_at(1, kPlace), moving = hand_at(2, kOther + 1e-3 * i * Vec3::UnitY());
@@ -99,7 +99,7 @@ TEST(HandWatch, TheHandBesideAFrozenOneIsTaken) {
   EXPECT_GT(watched.status().frozen, 25);
 }
 
-TEST(HandWatch, AHandBelowTheLeastConfidenceIsNotTaken) {
+TEST(HandWatch, AHandBelowTheMinimumConfidenceIsRejected) {
   TrackSettings settings;
   settings.least_confidence = 0.3;
   Watched watched(settings);
@@ -111,7 +111,7 @@ TEST(HandWatch, AHandBelowTheLeastConfidenceIsNotTaken) {
   EXPECT_EQ(watched.status().unsure, 2);
   EXPECT_EQ(watched.status().frozen, 0);
   EXPECT_EQ(watched.status().sentence,
-            "connected; 2 hands were not taken: their confidence was below 0.3");
+            "connected; 2 hands were ignored: their confidence was below 0.3");
   // without a bound all hands are accepted
   settings.least_confidence = 0.0;
   Watched all(settings);
@@ -119,7 +119,7 @@ TEST(HandWatch, AHandBelowTheLeastConfidenceIsNotTaken) {
   EXPECT_THAT(all.take({unsure}), ElementsAre(1));
 }
 
-TEST(HandWatch, AllocatesNothingAndRefusesSettingsOutsideTheirBounds) {
+TEST(HandWatch, AllocatesNothingAndRejectsSettingsOutOfBounds) {
   HandWatch watch({});
   HandFrame frame = frame_at(1.0, {hand_at(1, kPlace), hand_at(2, kOther)});
   const test::HeapGuard guard;

@@ -5,8 +5,8 @@
 
 namespace prostm::test {
 
-/// Returns a hand with its palm at p and the other joints along x; its claimed velocity must not be
-/// used.
+/// Returns a hand with its palm at p and the other joints along x; its reported velocity is wrong
+/// and must not be used.
 inline Hand hand_at(std::int64_t id, const Vec3& p, Side side = Side::Right) {
   Hand hand;
   hand.id = id;

@@ -17,7 +17,7 @@ using nlohmann::json;
 using test::eventually;
 using test::LeapServer;
 
-/// Returns frames of the scripted hand at 110 frames a second, from 5 s on, while it is visible.
+/// Returns frames of the scripted hand at 110 Hz, from 5 s on, while it is visible.
 std::vector<HandFrame> scripted_frames(int count) {
   const auto source = make_scripted_hand({}, {});
   std::vector<HandFrame> frames(static_cast<std::size_t>(count));
@@ -97,7 +97,7 @@ TEST(LeapClient, EveryFrameOfARecordingArrives) {
   }
 }
 
-TEST(LeapClient, EveryGeneratedFrameArrivesAndTheServiceIsToldWhatItNeeds) {
+TEST(LeapClient, EveryGeneratedFrameArrivesAndTheServiceGetsItsRequests) {
   const std::vector<HandFrame> frames = scripted_frames(60);
   LeapServer server(messages_of(frames));
   const auto tracker = make_leap_tracker(address_of(server));
@@ -109,7 +109,7 @@ TEST(LeapClient, EveryGeneratedFrameArrivesAndTheServiceIsToldWhatItNeeds) {
   EXPECT_THAT(tracker->status().sentence, testing::HasSubstr("connected to leap://127.0.0.1:"));
 }
 
-TEST(LeapClient, ComesBackAfterACutAndTheHandIsGoneMeanwhile) {
+TEST(LeapClient, ReconnectsAndHasNoHandMeanwhile) {
   auto server = std::make_unique<LeapServer>(messages_of(scripted_frames(110)), true);
   const auto hands = make_live_hand(make_leap_tracker(address_of(*server)), {});
   HandFrame frame;
@@ -146,7 +146,7 @@ TEST(LeapClient, WithoutAConnectionThereIsNoHand) {
       << "although the last frame is not " << TrackSettings().max_gap << " s old";
 }
 
-/// A service that plays its script for a moment and then gets stuck in one of several ways.
+/// A service that plays its script for a moment and then hangs in one of several ways.
 struct Stuck {
   const char* name;
   bool new_ids, time_goes_on;
@@ -159,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(LeapClient, StuckLeap,
                                          Stuck{"new_ids_and_time", true, true}),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
-TEST_P(StuckLeap, HasNoHandAfterAMomentAndSaysWhy) {
+TEST_P(StuckLeap, HasNoHandAfterAMomentAndExplainsWhy) {
   const Stuck& kind = GetParam();
   std::vector<HandFrame> frames = scripted_frames(20);
   std::vector<LeapServer::Message> messages = messages_of(frames);
@@ -183,7 +183,7 @@ TEST_P(StuckLeap, HasNoHandAfterAMomentAndSaysWhy) {
     return hands->tracker_status()->frames == static_cast<std::int64_t>(messages.size());
   };
   ASSERT_TRUE(eventually([&] { return count() == 1; }));
-  // it is stuck from then on
+  // hangs from then on
   bool gone = false, came_back = false;
   ASSERT_TRUE(eventually([&] {
     const bool there = count() == 1;
@@ -203,7 +203,7 @@ TEST_P(StuckLeap, HasNoHandAfterAMomentAndSaysWhy) {
   } else {
     EXPECT_EQ(status.repeated, 130);
     EXPECT_EQ(status.frozen, 0);
-    EXPECT_THAT(status.sentence, testing::HasSubstr("130 frames were not taken"));
+    EXPECT_THAT(status.sentence, testing::HasSubstr("130 frames were ignored"));
   }
 }
 
@@ -248,7 +248,7 @@ TEST(LeapClient, BadFramesAreDroppedAndCounted) {
   for (const LeapServer::Message& message : messages_of(frames)) messages.push_back(message);
   LeapServer server(messages);
   const auto tracker = make_leap_tracker(address_of(server));
-  // the first of the frames without their hand has their common time; the others repeat it
+  // the first of the frames without their hand has the common time; the others repeat it
   std::vector<HandFrame> received = receive(*tracker, frames.size());
   received.erase(received.begin());
   expect_same_hands(received, {frames.begin() + 1, frames.end()});
@@ -263,7 +263,7 @@ TEST(LeapClient, BadFramesAreDroppedAndCounted) {
   EXPECT_THAT(status.sentence, testing::HasSubstr("of another hand"));
 }
 
-TEST(LeapClient, SaysWhenNothingOrSomethingElseAnswers) {
+TEST(LeapClient, ReportsThatNothingOrAnotherServerAnswers) {
   std::uint16_t free_port = 0;
   {
     LeapServer server({}, false, "/other.json");
@@ -297,7 +297,7 @@ TEST(LeapClient, TheHostHasBracketsAroundAnIpv6Address) {
   }
 }
 
-TEST(LeapAddress, IsReadOrRefusedWithASentence) {
+TEST(LeapAddress, IsReadOrRejectedWithASentence) {
   EXPECT_EQ(leap_address("leap://127.0.0.1:6437").host, "127.0.0.1");
   EXPECT_EQ(leap_address("leap://localhost").port, 6437);
   EXPECT_EQ(leap_address("leap://[::1]:700").host, "::1");
@@ -311,7 +311,7 @@ TEST(LeapAddress, IsReadOrRefusedWithASentence) {
   }
 }
 
-TEST(StampClock, TakesTheJitterOfTheWayOut) {
+TEST(StampClock, RemovesTheJitterOfTheTransport) {
   // frames every 9 ms with a delay of 2 ms, or up to 12 ms
   StampClock clock;
   double last = 0.0;
@@ -330,12 +330,12 @@ TEST(StampClock, TakesTheJitterOfTheWayOut) {
   EXPECT_NEAR(clock.time_of(9000.0, 200.1).value(), 200.1, 1e-9);
 }
 
-TEST(StampClock, AStampThatWasSeenIsNoFrameHoweverLateItComes) {
+TEST(StampClock, ARepeatedStampIsNoNewFrameHoweverLate) {
   StampClock clock;
   EXPECT_TRUE(clock.time_of(5.0, 100.0));
   for (double arrival = 100.0; arrival < 110.0; arrival += 0.01)
     ASSERT_FALSE(clock.time_of(5.0, arrival)) << arrival;
-  EXPECT_FALSE(clock.time_of(4.95, 110.0)) << "one that was overtaken on its way";
+  EXPECT_FALSE(clock.time_of(4.95, 110.0)) << "a frame that was overtaken";
   EXPECT_NEAR(clock.time_of(5.01, 110.0).value(), 110.0, 1e-9);
   // a new connection does not make it new either
   clock.reset();
@@ -343,7 +343,7 @@ TEST(StampClock, AStampThatWasSeenIsNoFrameHoweverLateItComes) {
   EXPECT_NEAR(clock.time_of(5.02, 111.0).value(), 111.0, 1e-9);
 }
 
-TEST(LeapLook, SaysWhatIsThereWithinItsTime) {
+TEST(LeapLook, ReportsWhatIsConnectedInTime) {
   const auto look = [](const HostPort& address) { return look_for_leap(address, 0.5); };
   {
     const LeapServer server(messages_of(scripted_frames(200)), true);

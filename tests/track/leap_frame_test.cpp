@@ -27,7 +27,7 @@ HandFrame scripted(bool left) {
   return frame;
 }
 
-TEST(LeapFrame, BasesOfLeftHandsMayBeOfEitherHand) {
+TEST(LeapFrame, BasesOfLeftHandsMayHaveEitherHandedness) {
   for (const bool left : {false, true}) {
     const HandFrame sent = scripted(left);
     for (const bool mirrored : {false, true}) {
@@ -42,14 +42,14 @@ TEST(LeapFrame, BasesOfLeftHandsMayBeOfEitherHand) {
       for (std::size_t j = kWrist; j < kJointCount; ++j) {
         EXPECT_LT((a.position[j] - b.position[j]).norm(), 1e-9);
         EXPECT_EQ(a.velocity[j], Vec3::Zero());
-        // the tips turn with their last bones, as in the skeleton
+        // the tips rotate with their last bones, as in the skeleton
         EXPECT_LT(a.orientation[j].angularDistance(b.orientation[j]), 1e-6) << j;
       }
     }
   }
 }
 
-TEST(LeapFrame, GreetingsAndEventsAreNoFrames) {
+TEST(LeapFrame, GreetingsAndEventsAreNotFrames) {
   HandFrame frame;
   HandFaults faults;
   for (const char* text :
@@ -68,8 +68,8 @@ TEST(LeapFrame, GreetingsAndEventsAreNoFrames) {
             "microseconds");
 }
 
-/// Returns the message of a flat hand without bases, whose fingers are bent at the knuckle by
-/// `bend` and swung by `swing` [rad], with noise of `noise` [m] at each joint.
+/// Returns the message of a flat hand without bases, with its fingers bent at the knuckle by
+/// `bend` and swung sideways by `swing` [rad], with noise of `noise` [m] at each joint.
 nlohmann::json bent_fingers(Side side, double bend, double swing, double noise, unsigned seed) {
   HandFrame frame;
   make_study_hand({.side = side})->sample(0.0, frame);
@@ -108,7 +108,7 @@ TEST(LeapFrame, FingersMayBendByAnyAngle) {
           const std::size_t knuckle = base + 1;
           const Vec3 bone = (hand.position[knuckle + 1] - hand.position[knuckle]).normalized();
           EXPECT_GT(bone.dot(hand.orientation[knuckle] * -Vec3::UnitZ()), 0.9999);
-          // the frame turns with the finger and never flips over
+          // the frame rotates with the finger and never flips
           if (bend > -30) {
             EXPECT_LT(hand.orientation[knuckle].angularDistance(last[knuckle]), 25.0 * kDegree)
                 << bend << " " << swing;
@@ -120,8 +120,8 @@ TEST(LeapFrame, FingersMayBendByAnyAngle) {
   }
 }
 
-/// Bends and swings every joint of a flat hand at random within the range of people, which includes
-/// fists, grasps, pinches and crossed fingers, and turns the whole hand. Frames follow their bones.
+/// Bends and swings every joint of a flat hand at random within the human range, which includes
+/// fists, grasps, pinches and crossed fingers, and rotates the hand. Frames follow their bones.
 Hand any_posture(Side side, std::mt19937& random) {
   constexpr double kDegree = 3.14159265358979 / 180.0;
   const auto draw = [&](double low, double high) {
@@ -131,7 +131,7 @@ Hand any_posture(Side side, std::mt19937& random) {
   make_study_hand({.side = side})->sample(0.0, frame);
   Hand hand = frame.hands.at(0);
   const Hand flat = hand;
-  // flexion of the joint at the knuckle and of the two behind it; the thumb has its own first bone
+  // flexion of the knuckle and of the two joints beyond it; the thumb has its own first bone
   const auto bend = [&](std::size_t knuckle, std::array<double, 3> flexion, double swing) {
     Quat turn(Eigen::AngleAxisd(swing, flat.orientation[knuckle] * Vec3::UnitY()));
     for (std::size_t b = 0; b < 3; ++b) {
@@ -155,7 +155,7 @@ Hand any_posture(Side side, std::mt19937& random) {
   return hand;
 }
 
-TEST(LeapFrame, EveryPostureIsAHandWithAndWithoutBases) {
+TEST(LeapFrame, EveryPostureIsReadWithAndWithoutBases) {
   std::mt19937 random(11);
   for (int round = 0; round < 4000; ++round) {
     const Side side = round % 2 == 0 ? Side::Left : Side::Right;
@@ -179,7 +179,7 @@ TEST(LeapFrame, EveryPostureIsAHandWithAndWithoutBases) {
   }
 }
 
-TEST(LeapFrame, AFistCostsNoHand) {
+TEST(LeapFrame, AFistIsNotDiscarded) {
   nlohmann::json fist = bent_fingers(Side::Right, 1.72, 0.0, 0.0, 1),
                  flat = bent_fingers(Side::Left, 0.0, 0.0, 0.0, 1);
   flat["hands"][0]["id"] = 9;

@@ -15,7 +15,7 @@ inline nlohmann::json axis_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-/// Returns rows x, y, z of a joint's frame; `mirrored` as the original service does for left hands.
+/// Returns rows x, y, z of a joint's frame; `mirrored` as in the original service for left hands.
 inline nlohmann::json basis_json(const Quat& q, bool mirrored) {
   return {axis_json((mirrored ? -1.0 : 1.0) * (q * Vec3::UnitX())), axis_json(q * Vec3::UnitY()),
           axis_json(q * Vec3::UnitZ())};

@@ -1,5 +1,5 @@
 #pragma once
-/// A Leap service for tests that plays messages at their own times, on a free port.
+/// A Leap service for tests that sends messages at their own times, on a free port.
 
 #include <atomic>
 #include <boost/asio/ip/tcp.hpp>
@@ -19,12 +19,12 @@ namespace prostm::test {
 class LeapServer {
  public:
   struct Message {
-    double time;  // after the connection [s]
+    double time;  // since the connection [s]
     std::string text;
   };
 
-  /// Sends `messages` to every client that asks for `path`, repeatedly if `loop`.
-  /// @throws boost::system::system_error without such an address.
+  /// Sends `messages` to every client that requests `path`, repeatedly if `loop`.
+  /// @throws boost::system::system_error if the address does not exist.
   explicit LeapServer(std::vector<Message> messages, bool loop = false,
                       std::string path = "/v6.json", const std::string& address = "127.0.0.1")
       : messages_(std::move(messages)),
@@ -40,7 +40,7 @@ class LeapServer {
   }
 
   std::uint16_t port() const { return port_; }
-  /// The Host of the newest client. @pre requests() has returned.
+  /// The Host header of the newest client. @pre requests() has returned.
   const std::string& host() const { return host_; }
   /// Waits until clients have sent `count` messages; returns all so far.
   std::vector<std::string> requests(std::size_t count) {
@@ -54,7 +54,7 @@ class LeapServer {
     while (!done) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return all;
   }
-  /// Ends all connections without a message.
+  /// Closes all connections without a message.
   void cut() {
     boost::asio::post(io_, [this] {
       for (const auto& session : sessions_) session->close();

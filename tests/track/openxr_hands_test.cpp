@@ -25,7 +25,7 @@ std::size_t hands_of(HandSource& source) {
   return frame.hands.size();
 }
 
-/// Sets the environment of the loader and the replay runtime, and restores it afterwards.
+/// Sets the environment of the loader and the replay runtime, and restores it on destruction.
 class OpenXr : public testing::Test {
  protected:
   OpenXr() {
@@ -47,7 +47,7 @@ class OpenXr : public testing::Test {
     if (std::filesystem::exists(flapping)) return flapping;
     return scripted_file({}, 300);
   }
-  /// Returns a file with two hands that do not move at all.
+  /// Returns a file with two hands that do not move.
   std::string still_file() {
     ScriptedHandSettings still;
     still.still = true;
@@ -119,7 +119,7 @@ TEST_F(OpenXr, BothHandsArriveThroughTheLoader) {
       EXPECT_EQ(frame.hands[1].side, Side::Right);
       EXPECT_NE(frame.hands[0].id, frame.hands[1].id);
       const auto found = frame_of(frame, recording);
-      EXPECT_TRUE(found) << "hands that are not in the recording";
+      EXPECT_TRUE(found) << "these hands are not in the recording";
       if (found) seen.insert(*found);
     }
     return seen.size() >= 50;
@@ -131,7 +131,7 @@ TEST_F(OpenXr, BothHandsArriveThroughTheLoader) {
   EXPECT_GE(status.frames, 50);
 }
 
-TEST_F(OpenXr, ALostSessionIsAskedForAgain) {
+TEST_F(OpenXr, ALostSessionIsRequestedAgain) {
   set("PROSTM_REPLAY_LOSS", "0.3");
   const auto hands = make_live_hand(make_openxr_tracker(), {});
   ASSERT_TRUE(eventually([&] { return hands_of(*hands) == 2; }));
@@ -142,7 +142,7 @@ TEST_F(OpenXr, ALostSessionIsAskedForAgain) {
   EXPECT_GE(hands->tracker_status()->reconnects, 1);
 }
 
-TEST_F(OpenXr, ConfidenceIsTheShareOfJointsThatAreTracked) {
+TEST_F(OpenXr, ConfidenceIsTheFractionOfTrackedJoints) {
   for (const auto& [inferred, confidence] : {std::pair{"0", 1.0}, {"6", 20.0 / 26.0}}) {
     set("PROSTM_REPLAY_INFERRED", inferred);
     const auto hands = make_live_hand(make_openxr_tracker(), {});
@@ -154,7 +154,7 @@ TEST_F(OpenXr, ConfidenceIsTheShareOfJointsThatAreTracked) {
     EXPECT_NEAR(frame.hands[0].confidence, confidence, 1e-12);
     EXPECT_EQ(hands->tracker_status()->unsure, 0);
   }
-  // hands with nearly all joints inferred are not accepted
+  // hands with nearly all joints inferred are rejected
   set("PROSTM_REPLAY_INFERRED", "24");
   const auto hands = make_live_hand(make_openxr_tracker(), {});
   HandFrame frame;
@@ -166,7 +166,7 @@ TEST_F(OpenXr, ConfidenceIsTheShareOfJointsThatAreTracked) {
   EXPECT_THAT(hands->tracker_status()->sentence, testing::HasSubstr("below 0.1"));
 }
 
-TEST_F(OpenXr, AHandThatDoesNotMoveAtAllIsThatOfAFrozenTracker) {
+TEST_F(OpenXr, AHandWithoutAnyMotionMeansAFrozenTracker) {
   set("PROSTM_REPLAY_HANDS", still_file());
   TrackSettings settings;
   settings.freeze_time = 0.1;
@@ -178,7 +178,7 @@ TEST_F(OpenXr, AHandThatDoesNotMoveAtAllIsThatOfAFrozenTracker) {
               testing::HasSubstr("a hand has not moved at all for 0.1 s"));
 }
 
-TEST_F(OpenXr, SaysWhatIsMissingAndGoesOnOnceItIsThere) {
+TEST_F(OpenXr, ReportsWhatIsMissingAndContinuesOnceItIsThere) {
   const auto says = [](const HandSource& hands, const char* words) {
     return eventually(
         [&] { return hands.tracker_status()->sentence.find(words) != std::string::npos; });

@@ -80,7 +80,7 @@ TEST(PageHand, AnglesTurnAsDescribed) {
   EXPECT_NEAR((hand.orientation[kPalm] * Vec3::UnitX()).z(), -std::sin(0.3), 1e-12);
 }
 
-TEST(PageHand, MessagesOfUnevenTimingMakeAFluidMotion) {
+TEST(PageHand, UnevenMessagesGiveASmoothMotion) {
   // a pointer at 0.3 m/s, reported at about 60 Hz, sampled at 50 Hz
   const TrackSettings settings;
   PageHand page{settings};
@@ -106,7 +106,7 @@ TEST(PageHand, MessagesOfUnevenTimingMakeAFluidMotion) {
   }
 }
 
-TEST(PageHand, AJumpOfThePointerIsFollowedAtNoMoreThanTheLargestSpeed) {
+TEST(PageHand, AJumpOfThePointerIsFollowedAtTheLargestSpeed) {
   const TrackSettings settings;
   PageHand page{settings};
   Hand hand;
@@ -125,7 +125,7 @@ TEST(PageHand, AJumpOfThePointerIsFollowedAtNoMoreThanTheLargestSpeed) {
   EXPECT_LT((last - to).norm(), 1e-6);
 }
 
-TEST(PageHand, YawTurnsTheShortWay) {
+TEST(PageHand, YawTakesTheShortWay) {
   PageHand page{TrackSettings()};
   PagePose pose = pose_at(Vec3(0, 0, 0.2));
   Hand hand;
@@ -137,16 +137,16 @@ TEST(PageHand, YawTurnsTheShortWay) {
   for (int i = 1; i < 40; ++i) {
     ASSERT_TRUE(page.place(pose));
     ASSERT_TRUE(page.sample(kStep * i, hand, age));
-    EXPECT_LT(along_fingers(hand).y(), -0.95) << "it never points forwards";
+    EXPECT_LT(along_fingers(hand).y(), -0.95) << "the fingers never point forwards";
   }
   EXPECT_NEAR(along_fingers(hand).x(), -std::sin(-3.0), 1e-3);
 }
 
-TEST(PageHand, SilenceReleasesItUntilPosesComeSteadily) {
+TEST(PageHand, SilenceReleasesItUntilPosesArriveSteadily) {
   PageHand page{TrackSettings()};
   Hand hand;
   double age = 0.0;
-  EXPECT_FALSE(page.sample(0.0, hand, age)) << "nobody holds it yet";
+  EXPECT_FALSE(page.sample(0.0, hand, age)) << "no page holds it yet";
   page.place(pose_at(Vec3(0, 0, 0.2)));
   ASSERT_TRUE(page.sample(1.0, hand, age));
   const std::int64_t id = hand.id;
@@ -160,11 +160,11 @@ TEST(PageHand, SilenceReleasesItUntilPosesComeSteadily) {
     ASSERT_EQ(page.sample(2.0 + 0.1 * i, hand, age), i == 10) << i;
   }
   EXPECT_NE(hand.id, id);
-  EXPECT_NEAR(hand.position[kPalm].x(), 0.1, 1e-12) << "it comes where the pointer is";
+  EXPECT_NEAR(hand.position[kPalm].x(), 0.1, 1e-12) << "it appears at the pointer";
 }
 
-/// The timers of a hidden page run once a second, or once a minute, and now and then in bursts.
-TEST(PageHand, LateTimersReleaseItOnceAndNeverBringItBack) {
+/// The timers of a hidden page fire once a second, or once a minute, and sometimes in bursts.
+TEST(PageHand, LateTimersReleaseItOnceAndNeverReturnIt) {
   for (const double period : {0.6, 1.0, 60.0}) {
     for (const int burst : {1, 5}) {
       PageHand page{TrackSettings()};
@@ -186,7 +186,7 @@ TEST(PageHand, LateTimersReleaseItOnceAndNeverBringItBack) {
   }
 }
 
-TEST(PageHand, AHandThatWasReleasedIsTakenAnewAtOnce) {
+TEST(PageHand, AReleasedHandIsTakenAgainAtOnce) {
   PageHand page{TrackSettings()};
   Hand hand;
   double age = 0.0;
@@ -197,7 +197,7 @@ TEST(PageHand, AHandThatWasReleasedIsTakenAnewAtOnce) {
   EXPECT_EQ(page.report().state, PageHandState::Free);
   page.place(pose_at(Vec3(0, 0, 0.2)));
   EXPECT_TRUE(page.sample(0.04, hand, age));
-  // also one that had lapsed
+  // also one that has lapsed
   EXPECT_FALSE(page.sample(1.0, hand, age));
   page.release();
   EXPECT_FALSE(page.sample(1.02, hand, age));
@@ -223,7 +223,7 @@ TEST(PageHand, ReportsThatItsPageIsHidden) {
   EXPECT_EQ(page.report().late, 0);
 }
 
-TEST(PageHand, RefusesWhatIsNoPlaceAndClampsAngles) {
+TEST(PageHand, RejectsInvalidPositionsAndClampsAngles) {
   PageHand page{TrackSettings()};
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Vec3& p :
@@ -244,7 +244,7 @@ TEST(PageHand, RefusesWhatIsNoPlaceAndClampsAngles) {
   for (const Vec3& p : hand.position) EXPECT_LT((p - pose.p_D).norm(), 0.25);
 }
 
-TEST(HandSwitch, GivesThePagesHandWhileItIsHeldAndTheOtherElse) {
+TEST(HandSwitch, GivesThePagesHandWhileItIsHeldAndTheOtherOtherwise) {
   const Pose X_DT = ultraleap_kit_pose();
   auto page = std::make_shared<PageHand>(TrackSettings());
   ScriptedHandSettings still;
@@ -277,7 +277,7 @@ TEST(HandSwitch, GivesThePagesHandWhileItIsHeldAndTheOtherElse) {
   EXPECT_TRUE(frame.hands.empty());
 }
 
-TEST(HandSwitch, SamplingAllocatesNothingWhilePagesPlace) {
+TEST(HandSwitch, SamplingDoesNotAllocateWhilePagesSendPoses) {
   auto page = std::make_shared<PageHand>(TrackSettings());
   HandSwitch hands(make_absent_hand(), page, default_tracker_pose());
   std::atomic<bool> stop{false};

@@ -19,7 +19,7 @@ constexpr double kStep = 0.02;
 
 using test::hand_at;
 
-/// Returns a hand in linear motion, seen at irregular times.
+/// Returns a hand in linear motion, sampled at irregular times.
 HandRecording linear_recording(const Vec3& start, const Vec3& velocity, int frames,
                                std::uint64_t seed) {
   Random random(seed);
@@ -51,7 +51,7 @@ TEST(RecordedHand, LinearMotionAtIrregularTimesIsExact) {
   }
 }
 
-TEST(RecordedHand, OrientationsTurnEvenly) {
+TEST(RecordedHand, OrientationsRotateEvenly) {
   HandRecording recording;
   for (const double t : {0.0, 0.03}) {
     HandFrame frame;
@@ -68,8 +68,8 @@ TEST(RecordedHand, OrientationsTurnEvenly) {
               0.0, 1e-7);
 }
 
-TEST(RecordedHand, VelocityOfASineIsThatOfTheSmoothedSine) {
-  // both smoothings of (H1), the means and the difference, multiply a sine's derivative by one sinc
+TEST(RecordedHand, TheVelocityOfASineIsThatOfTheSmoothedSine) {
+  // both smoothings of (H1), the means and the difference, multiply a sine's derivative by a sinc
   // each
   constexpr double kOmega = 20.0, kAmplitude = 0.03;
   HandRecording recording;
@@ -156,17 +156,17 @@ TEST(RecordedHand, ALoopIsAHandThatLeavesAndComesBack) {
     const double x = frame.hands[0].position[kPalm].x();
     if (x < last_x) {
       ++seams;
-      EXPECT_GE(without, 1) << "the hand jumped back without leaving";
+      EXPECT_GE(without, 1) << "the hand jumped back instead of leaving";
     }
     EXPECT_LT((frame.hands[0].velocity[kPalm] - Vec3(1.0, 0, 0)).norm(), 1e-9)
-        << "a velocity crossed the seam";
+        << "a velocity was taken across the seam";
     last_x = x;
     without = 0;
   }
   EXPECT_GE(seams, static_cast<int>(20.0 / (length + 2 * kStep)) - 1);
 }
 
-TEST(RecordedHand, EndsWithoutLoopAndSaysNothingBeforeTheStart) {
+TEST(RecordedHand, EndsWithoutALoopAndIsEmptyBeforeTheStart) {
   const HandRecording recording = linear_recording(Vec3::Zero(), Vec3(1.0, 0, 0), 10, 6);
   const auto source = make_recorded_hand(recording, {}, false, kStep);
   EXPECT_EQ(source->recording_length(), recording.frames.back().time);
@@ -179,7 +179,7 @@ TEST(RecordedHand, EndsWithoutLoopAndSaysNothingBeforeTheStart) {
   EXPECT_TRUE(frame.hands.empty());
 }
 
-TEST(RecordedHand, SeekingGoesOnFromThereAsAnotherHand) {
+TEST(RecordedHand, SeekingContinuesFromThereAsAnotherHand) {
   const HandRecording recording = linear_recording(Vec3::Zero(), Vec3(1.0, 0, 0), 100, 6);
   const auto source = make_recorded_hand(recording, {}, true, kStep);
   EXPECT_EQ(source->recording_length(), recording.frames.back().time);
@@ -202,7 +202,7 @@ TEST(RecordedHand, SeekingGoesOnFromThereAsAnotherHand) {
   EXPECT_NEAR(source->recording_time(), source->recording_length(), 1e-12);
 }
 
-TEST(RecordedHand, ASingleFrameRests) {
+TEST(RecordedHand, ASingleFrameIsAtRest) {
   const auto source =
       make_recorded_hand(linear_recording(Vec3(1, 2, 3), Vec3(1, 0, 0), 1, 1), {}, false, kStep);
   HandFrame frame;
@@ -220,7 +220,7 @@ TEST(RecordedHand, SamplingAllocatesNothing) {
   EXPECT_EQ(guard.allocations(), 0u);
 }
 
-TEST(RecordedHand, RefusesWhatItCannotPlay) {
+TEST(RecordedHand, RejectsRecordingsThatItCannotPlay) {
   EXPECT_THROW(make_recorded_hand({}, {}, false, kStep), std::invalid_argument);
   EXPECT_THROW(
       make_recorded_hand(linear_recording(Vec3::Zero(), Vec3::Zero(), 3, 1), {}, true, 0.0),
@@ -241,7 +241,7 @@ TEST(RecordedHand, RefusesWhatItCannotPlay) {
   }
 }
 
-TEST(RecordedHand, HandsBelowTheLeastConfidenceAreNotTaken) {
+TEST(RecordedHand, HandsBelowTheMinimumConfidenceAreRejected) {
   HandRecording recording = linear_recording(Vec3::Zero(), Vec3(1, 0, 0), 20, 1);
   const double length = recording.frames.back().time, middle = recording.frames[9].time;
   for (std::size_t i = 10; i < 20; ++i) recording.frames[i].hands[0].confidence = 0.05;
@@ -258,7 +258,7 @@ TEST(RecordedHand, HandsBelowTheLeastConfidenceAreNotTaken) {
     unbounded->sample(length, frame);
     EXPECT_EQ(frame.hands.size(), 1u);
   }
-  // nothing would be played: the source refuses with a message
+  // nothing would be played: the source throws with a message
   for (HandFrame& frame : recording.frames) frame.hands[0].confidence = 0.0;
   for (const auto make : {make_recorded_hand, make_replayed_hand}) {
     try {
@@ -272,8 +272,8 @@ TEST(RecordedHand, HandsBelowTheLeastConfidenceAreNotTaken) {
   }
 }
 
-// a recording may stand still, unlike a live tracker
-TEST(RecordedHand, AHandThatDoesNotMoveIsPlayedOnAndOn) {
+// a recording may be at rest, unlike a live tracker
+TEST(RecordedHand, AHandAtRestIsPlayedThroughout) {
   for (const auto make : {make_recorded_hand, make_replayed_hand}) {
     const auto source =
         make(linear_recording(Vec3(0, 0.2, 0), Vec3::Zero(), 300, 1), {}, false, kStep);
@@ -307,7 +307,7 @@ TEST(RecordedHand, RealRecordingsPlayWithFiniteClampedVelocities) {
   }
 }
 
-TEST(RecordedHand, ARecordingThinnedToHalfTellsNearlyTheSame) {
+TEST(RecordedHand, HalfOfTheFramesGiveNearlyTheSameHands) {
   PROSTM_NEEDS_SHARED("data/hands/rollAndPitchWithEntry.hands.jsonl");
   const HandRecording full =
       read_hand_recording(test::shared_file("data/hands/rollAndPitchWithEntry.hands.jsonl"));
@@ -331,7 +331,7 @@ TEST(RecordedHand, ARecordingThinnedToHalfTellsNearlyTheSame) {
   EXPECT_LT(velocity, 0.1 * speed);
 }
 
-/// Returns two right hands and a left one that comes later, in linear motion.
+/// Returns two right hands and a left one that appears later, in linear motion.
 HandRecording three_hands(int frames) {
   HandRecording recording;
   for (int i = 0; i < frames; ++i) {
@@ -345,7 +345,7 @@ HandRecording three_hands(int frames) {
   return recording;
 }
 
-TEST(HandSources, AHandThatIsRenamedInEveryFrameGoesOn) {
+TEST(HandSources, AHandRenamedInEveryFrameContinues) {
   const HandRecording named = three_hands(50);
   HandRecording renamed = named;
   std::int64_t id = 100;
@@ -396,7 +396,7 @@ TEST(HandSources, ANewIdFarAwayIsAnotherHand) {
   EXPECT_LT(frame.hands[0].velocity[kPalm].norm(), 1e-9);
 }
 
-TEST(HandSources, RefuseARecordingThatIsTooSlowToMove) {
+TEST(HandSources, RejectARecordingThatIsTooSlow) {
   HandRecording recording;
   for (int i = 0; i < 20; ++i) {
     HandFrame frame;

@@ -109,7 +109,7 @@ TEST(ScriptedHand, VelocitiesAreThoseOfThePositions) {
   EXPECT_LT(fastest, 1.0);
 }
 
-TEST(ScriptedHand, EveryCycleIsTheSameMotionOfANewHand) {
+TEST(ScriptedHand, EveryCycleRepeatsTheMotionWithANewHand) {
   const auto source = make_scripted_hand({}, {});
   const HandFrame first = at(*source, 7.0), second = at(*source, 27.0);
   ASSERT_EQ(first.hands.size() + second.hands.size(), 2u);
@@ -131,7 +131,7 @@ TEST(ScriptedHand, JitterIsWhiteNoiseThatReachesTheVelocities) {
   double position = 0.0, velocity = 0.0;
   int count = 0;
   for (int i = 0; i < 500; ++i) {
-    // at the tracker's own frames positions have all of the noise
+    // at the tracker's own frames positions contain the full noise
     const double t = 1.0 + 11.0 * i / 110.0;
     const HandFrame frame = at(*noisy, t), same = at(*again, t);
     for (std::size_t j = 0; j < kJointCount; ++j, ++count) {
@@ -161,7 +161,7 @@ TEST(ScriptedHand, SeedsDifferAndSamplingAllocatesNothing) {
   EXPECT_EQ(one->recording_length(), 0.0);
 }
 
-TEST(ScriptedHand, RefusesSettingsOutOfBounds) {
+TEST(ScriptedHand, RejectsSettingsOutOfBounds) {
   ScriptedHandSettings settings;
   settings.height = 1.0;
   try {

@@ -28,7 +28,7 @@ TEST(StudyHand, IsFlatClosedAndLevelWithItsPalmTowardsTheArray) {
   EXPECT_NEAR(palm.straightness, 1.0, 1e-6);
   EXPECT_NEAR(palm.size, 1.0, 0.02);
   for (const Vec3& v : hand.velocity) EXPECT_EQ(v.norm(), 0.0);
-  // dorsal is away from the array
+  // dorsal points away from the array
   EXPECT_GT((hand.orientation[kPalm] * Vec3::UnitY()).z(), 0.99);
   // tips of neighbours touch, within 2 mm of flesh
   const int tips[] = {kIndexTip, kMiddleTip, kRingTip, kLittleTip};
@@ -53,7 +53,7 @@ TEST(StudyHand, OrientationsPointAlongTheBones) {
   }
 }
 
-TEST(StudyHand, AllLengthsGoWithItsSizeAndALeftHandIsTheMirrorImage) {
+TEST(StudyHand, AllLengthsScaleWithItsSizeAndALeftHandIsTheMirrorImage) {
   const Hand one = hand_of({}), small = hand_of({.size = 0.8}),
              left = hand_of({.side = Side::Left});
   EXPECT_EQ(left.side, Side::Left);
@@ -69,12 +69,12 @@ TEST(StudyHand, AllLengthsGoWithItsSizeAndALeftHandIsTheMirrorImage) {
   EXPECT_NEAR(palm_of(small).size, 0.8 * palm_of(one).size, 1e-9);
 }
 
-TEST(StudyHand, RefusesWhatIsOutOfBounds) {
+TEST(StudyHand, RejectsSettingsOutOfBounds) {
   EXPECT_THROW(make_study_hand({.size = 0.5}), std::invalid_argument);
   EXPECT_THROW(make_study_hand({.height = 1.0}), std::invalid_argument);
 }
 
-TEST(Palm, TellsHowAHandIsTurnedTiltedAndBent) {
+TEST(Palm, MeasuresHowAHandIsTurnedTiltedAndBent) {
   Hand hand = hand_of({});
   const Palm before = palm_of(hand);
   const Eigen::Matrix3d turn =

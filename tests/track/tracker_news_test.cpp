@@ -20,7 +20,7 @@ const TrackerStatus kThere = status_of(true, 5, "connected");
 const TrackerStatus kMute = status_of(true, 0, "connected");
 const TrackerStatus kCut = status_of(false, 5, "the connection was lost");
 
-/// All that is told of a tracker that is `status` from `begin` to `end`, looked at every 50 ms.
+/// All messages about a tracker that is `status` from `begin` to `end`, polled every 50 ms.
 std::vector<std::string> told(TrackerNews& news, const TrackerStatus& status, double begin,
                               double end) {
   std::vector<std::string> all;
@@ -35,31 +35,31 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-TEST(TrackerNews, SaysWithinTwoSecondsThatNothingIsThereAndThenNoMore) {
+TEST(TrackerNews, ReportsAMissingTrackerOnceWithinTwoSeconds) {
   TrackerNews news;
   EXPECT_THAT(told(news, kAbsent, 0.0, 1.4), IsEmpty());
   EXPECT_THAT(told(news, kAbsent, 1.4, 2.0),
               ElementsAre(testing::AllOf(StartsWith("No tracker yet: nothing answers. "),
-                                         HasSubstr("tries again"))));
+                                         HasSubstr("keeps trying"))));
   EXPECT_THAT(told(news, kAbsent, 2.0, 60.0), IsEmpty());
 }
 
-TEST(TrackerNews, SaysEachChangeOnce) {
+TEST(TrackerNews, ReportsEachChangeOnce) {
   TrackerNews news;
   EXPECT_THAT(told(news, kAbsent, 0.0, 3.0), testing::SizeIs(1));
-  // at once, though something was told a moment ago
+  // at once, although another message came a moment ago
   EXPECT_THAT(told(news, kThere, 3.0, 30.0), ElementsAre("The tracker is there: connected."));
   EXPECT_EQ(told(news, kCut, 30.0, 30.1).size(), 1u);
   EXPECT_THAT(told(news, kAbsent, 30.1, 50.0), IsEmpty());
   EXPECT_THAT(told(news, kThere, 50.0, 70.0), ElementsAre("The tracker is back: connected."));
 }
 
-TEST(TrackerNews, ATrackerThatIsThereFromTheBeginningIsToldOnce) {
+TEST(TrackerNews, ATrackerPresentFromTheStartIsReportedOnce) {
   TrackerNews news;
   EXPECT_THAT(told(news, kThere, 0.1, 60.0), ElementsAre("The tracker is there: connected."));
 }
 
-TEST(TrackerNews, OneThatComesAndGoesIsToldEveryFewSecondsAtMost) {
+TEST(TrackerNews, ATrackerThatComesAndGoesIsReportedEveryFewSecondsAtMost) {
   TrackerNews news;
   std::vector<std::string> all = told(news, kThere, 0.0, 1.0);
   for (double t = 1.0; t < 61.0; t += 0.4) {
@@ -70,7 +70,7 @@ TEST(TrackerNews, OneThatComesAndGoesIsToldEveryFewSecondsAtMost) {
   EXPECT_LE(all.size(), 14u);
 }
 
-TEST(TrackerNews, AServiceWithoutATrackerIsNamed) {
+TEST(TrackerNews, AServiceWithoutATrackerIsReported) {
   TrackerNews news;
   EXPECT_THAT(told(news, kMute, 0.0, 60.0),
               ElementsAre("The tracker is there: connected.",

@@ -21,7 +21,7 @@ namespace stand_in = test::stand_in;
 
 constexpr double kAudible = 0.01;
 
-/// Largest steps of what the stand-in emits.
+/// Largest steps in the stand-in's emission.
 class StepWatch {
  public:
   StepWatch() {
@@ -32,7 +32,7 @@ class StepWatch {
   StepWatch(const StepWatch&) = delete;
   StepWatch& operator=(const StepWatch&) = delete;
 
-  double step = 0.0;    ///< of a point above 1 % before and after [m]
+  double step = 0.0;    ///< of a point above 1 % in both samples [m]
   double change = 0.0;  ///< of an intensity
   double sum = 0.0;     ///< of intensities
   std::int64_t samples = 0;
@@ -55,7 +55,7 @@ class StepWatch {
   FocusSample last_[8];
 };
 
-/// Three paths that wander, cross and change their strength.
+/// Three paths that drift, cross and change their strength.
 void submit_paths(Emitter& emitter, int number) {
   LiftedPlan& plan = emitter.draft();
   plan = {};
@@ -111,9 +111,9 @@ void play_a_minute(Method method, float least_separation) {
   EXPECT_EQ(chain->limited(), 0);
   EXPECT_EQ(stand_in::violations(), 0) << stand_in::last_violation();
   EXPECT_LE(watch.step, 8.0 / 16e3 * (1.0 + 1e-3)) << "8 m/s";
-  // the emission's own bound, and a step of the separation's fade
+  // the emission's own bound, plus a step of the separation's fade
   EXPECT_LE(watch.change, 3.0 / 40.0 + 1.0 / 16.0 + 1e-3);
-  EXPECT_GT(watch.sum / 960'000, 0.3) << "it sounds";
+  EXPECT_GT(watch.sum / 960'000, 0.3) << "the output is on";
 }
 
 TEST(UltraleapEmission, PlaysPathsForAMinute) {
@@ -173,7 +173,7 @@ TEST(UltraleapEmission, StartsAndStopsManyTimes) {
       EXPECT_EQ(device->status(), DeviceStatus::Vanished);
     }
     if (i % 2 == 0) device->stop();
-    // else the next start() lets go of it
+    // otherwise the next start() releases it
     if (i % 2 == 1) {
       Numbered other(2);
       ASSERT_EQ(device->start(other), DeviceStatus::Running);

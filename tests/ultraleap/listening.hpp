@@ -1,5 +1,5 @@
 #pragma once
-/// Sources for the adapter's tests, and what its stand-in was given.
+/// Sources for the adapter's tests, and a record of the stand-in's emission.
 
 #include <cmath>
 #include <memory>
@@ -17,7 +17,7 @@ inline DeviceSetup setup_of(int foci, const std::string& address = "") {
   return {.array = usx_array(), .address = address, .foci = foci};
 }
 
-/// A source whose samples carry their own number; points lie 30 mm apart.
+/// A source whose samples carry their index; points are 30 mm apart.
 class Numbered final : public SampleSource {
  public:
   explicit Numbered(int foci) : foci_(foci) {}
@@ -35,7 +35,7 @@ class Numbered final : public SampleSource {
     next_ = first + static_cast<std::int64_t>(out.size() / width);
   }
   bool in_order() const { return in_order_; }
-  /// Samples that were taken.
+  /// Samples requested so far.
   std::int64_t taken() const { return next_; }
 
  private:
@@ -44,7 +44,7 @@ class Numbered final : public SampleSource {
   bool in_order_ = true;
 };
 
-/// Remembers what the stand-in emits, in room made before.
+/// Records the stand-in's emission in preallocated memory.
 class Listener {
  public:
   struct Heard {

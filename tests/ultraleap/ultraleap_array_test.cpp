@@ -20,7 +20,7 @@ namespace stand_in = test::stand_in;
 
 constexpr int kFade = 16;  // samples of 1 ms at 16 kHz
 
-/// Stepped by hand; the array takes 3 points at 16 kHz.
+/// Stepped manually; the array accepts 3 points at 16 kHz.
 class UltraleapArray : public testing::Test {
  protected:
   void SetUp() override {
@@ -42,7 +42,7 @@ std::string refusal(const DeviceSetup& setup) {
   return "not refused";
 }
 
-TEST_F(UltraleapArray, TakesTheRateThatComesWithTheNumberOfPoints) {
+TEST_F(UltraleapArray, UsesTheRateForItsNumberOfPoints) {
   const double rates[] = {40e3, 20e3, 16e3, 13333.3333, 10e3, 8e3};
   const int decimations[] = {1, 2, 3, 3, 4, 5};
   for (int foci = 1; foci <= 6; ++foci) {
@@ -55,12 +55,12 @@ TEST_F(UltraleapArray, TakesTheRateThatComesWithTheNumberOfPoints) {
     EXPECT_EQ(info.block_samples, std::lround(rates[foci - 1] / 1000.0));
     EXPECT_EQ(info.max_foci, foci);
     EXPECT_TRUE(info.intensity_per_focus && info.streams && info.keeps_time);
-    // the registry knows it from then on
+    // the registry uses that rate from then on
     EXPECT_EQ(ultraleap_info(setup_of(foci)).sample_rate, info.sample_rate);
   }
 }
 
-TEST_F(UltraleapArray, NeverRunsFasterThanTheArrayCan) {
+TEST_F(UltraleapArray, NeverExceedsTheRateOfTheArray) {
   stand_in::Array array;
   array.emitter_follows = false;
   stand_in::reset({array});
@@ -69,14 +69,14 @@ TEST_F(UltraleapArray, NeverRunsFasterThanTheArrayCan) {
   EXPECT_EQ(make_ultraleap(setup_of(5))->info().sample_rate, 10e3);
 }
 
-TEST_F(UltraleapArray, NoticesThatNobodyAsksAnyMore) {
+TEST_F(UltraleapArray, DetectsThatCallbacksHaveStopped) {
   const auto device = make_ultraleap(setup_of(3));
   Numbered source(3);
   ASSERT_EQ(device->start(source), DeviceStatus::Running);
   stand_in::step(10);
   EXPECT_EQ(device->status(), DeviceStatus::Running);
   std::this_thread::sleep_for(std::chrono::milliseconds(1'100));
-  EXPECT_EQ(device->status(), DeviceStatus::Running) << "this program itself may have slept";
+  EXPECT_EQ(device->status(), DeviceStatus::Running) << "this program may have been suspended";
   EXPECT_TRUE(test::eventually([&] { return device->status() == DeviceStatus::Vanished; }));
   EXPECT_THAT(device->problem(), HasSubstr("no samples for a second"));
   ASSERT_EQ(device->start(source), DeviceStatus::Running);
@@ -95,7 +95,7 @@ TEST_F(UltraleapArray, SetsEverySampleOnceAndInOrder) {
     ASSERT_NEAR(static_cast<double>(heard.size()), rate, 1.0) << "a second";
     const auto fade = static_cast<std::size_t>(std::ceil(1e-3 * rate));
     EXPECT_LE(source.taken(), static_cast<std::int64_t>(heard.size() + fade) + 1)
-        << "no more than are needed";
+        << "no more samples than needed";
     for (std::size_t i = 0; i < heard.size(); ++i) {
       for (int f = 0; f < foci; ++f) {
         const FocusSample given = Numbered::sample(static_cast<std::int64_t>(i), f);
@@ -104,7 +104,7 @@ TEST_F(UltraleapArray, SetsEverySampleOnceAndInOrder) {
         if (i + 1 >= fade) {
           ASSERT_NEAR(got.intensity, given.intensity, 1e-6F) << i;
         } else {
-          ASSERT_LE(got.intensity, given.intensity) << "rises within a fade";
+          ASSERT_LE(got.intensity, given.intensity) << "the rise is a fade";
         }
       }
       if (i == 0) continue;
@@ -143,10 +143,10 @@ TEST_F(UltraleapArray, NamesTheProgramThatUsesTheArray) {
     const auto device = make_ultraleap(setup_of(3));
     EXPECT_THAT(stand_in::owner("MockDevice:USX"), HasSubstr("prostm"));
   }
-  EXPECT_EQ(stand_in::owner("MockDevice:USX"), "") << "given back";
+  EXPECT_EQ(stand_in::owner("MockDevice:USX"), "") << "released";
 }
 
-TEST_F(UltraleapArray, SaysThatItIsGoneAndStartsAgain) {
+TEST_F(UltraleapArray, ReportsThatTheArrayIsGoneAndRestarts) {
   const auto device = make_ultraleap(setup_of(3));
   Numbered first(3), second(3);
   ASSERT_EQ(device->start(first), DeviceStatus::Running);
@@ -154,7 +154,7 @@ TEST_F(UltraleapArray, SaysThatItIsGoneAndStartsAgain) {
   stand_in::disconnect("MockDevice:USX");
   EXPECT_EQ(device->status(), DeviceStatus::Vanished);
   EXPECT_THAT(device->problem(), HasSubstr("was disconnected: connect it"));
-  // until it is back, it refuses
+  // start() fails until the array is back
   EXPECT_EQ(device->start(second), DeviceStatus::Refused);
   EXPECT_THAT(device->problem(), HasSubstr("No Ultraleap array that streams was found"));
   stand_in::reconnect("MockDevice:USX");
@@ -167,7 +167,7 @@ TEST_F(UltraleapArray, SaysThatItIsGoneAndStartsAgain) {
   EXPECT_EQ(listener.heard().back().point[1].p_D, Numbered::sample(799, 1).p_D);
 }
 
-TEST_F(UltraleapArray, FallsSilentWhenItIsTakenOrFails) {
+TEST_F(UltraleapArray, FallsSilentIfTheArrayIsTakenOrFails) {
   const std::pair<void (*)(), const char*> ends[] = {
       {[] { stand_in::report_error("MockDevice:USX", 7); }, "reports an error (number 7)"},
       {[] { stand_in::end_service(); }, "service of the Ultraleap Haptics SDK has ended"}};
@@ -181,7 +181,7 @@ TEST_F(UltraleapArray, FallsSilentWhenItIsTakenOrFails) {
     end();
     EXPECT_EQ(device->status(), DeviceStatus::Vanished);
     EXPECT_THAT(device->problem(), HasSubstr(words));
-    stand_in::step(5);  // what still asks hears a fade, then silence
+    stand_in::step(5);  // further callbacks get a fade, then silence
     const auto heard = listener.heard();
     ASSERT_EQ(heard.size(), 105U * 16U);
     for (std::size_t i = 1'600; i < heard.size(); ++i) {
@@ -194,7 +194,7 @@ TEST_F(UltraleapArray, FallsSilentWhenItIsTakenOrFails) {
   }
 }
 
-TEST_F(UltraleapArray, SaysThatAnotherProgramTookTheArray) {
+TEST_F(UltraleapArray, ReportsThatAnotherProgramTookTheArray) {
   const auto device = make_ultraleap(setup_of(3));
   Numbered source(3);
   ASSERT_EQ(device->start(source), DeviceStatus::Running);
@@ -221,7 +221,7 @@ TEST_F(UltraleapArray, CountsMissedAndLateCallbacks) {
   stand_in::make_late(false);
   EXPECT_EQ(device->stats().late_blocks, 4);
   EXPECT_EQ(device->stats().blocks, 24);
-  // no sample is skipped, and the times know of the gap
+  // no sample is skipped, and the times include the gap
   const auto heard = listener.heard();
   EXPECT_EQ(heard[160].point[0].p_D, Numbered::sample(160, 0).p_D);
   EXPECT_NEAR(heard[160].time - heard[159].time, 3e-3 + 1.0 / 16e3, 1e-6);
@@ -231,7 +231,7 @@ TEST_F(UltraleapArray, CountsMissedAndLateCallbacks) {
   EXPECT_EQ(device->stats().missed_blocks, 3) << "kept after the end";
 }
 
-TEST_F(UltraleapArray, StopsSafelyWhileCallbacksGoOn) {
+TEST_F(UltraleapArray, StopsSafelyDuringCallbacks) {
   auto device = make_ultraleap(setup_of(2));
   auto source = std::make_unique<Numbered>(2);
   ASSERT_EQ(device->start(*source), DeviceStatus::Running);
@@ -241,7 +241,7 @@ TEST_F(UltraleapArray, StopsSafelyWhileCallbacksGoOn) {
   device.reset();  // calls back once more
   EXPECT_EQ(stand_in::callbacks(), 21);
 
-  // likewise with a source that would tell, and that is loud
+  // likewise with a source that detects calls, at full intensity
   Listener listener(4'000);
   device = make_ultraleap(setup_of(2));
   Numbered alive(2);
@@ -255,7 +255,7 @@ TEST_F(UltraleapArray, StopsSafelyWhileCallbacksGoOn) {
   EXPECT_EQ(listener.heard().back().point[0].intensity, 0.0F);
 }
 
-TEST_F(UltraleapArray, FallsSilentIfTheRateChangesWhileItPlays) {
+TEST_F(UltraleapArray, FallsSilentIfTheRateChangesDuringPlayback) {
   const auto device = make_ultraleap(setup_of(3));
   Listener listener(8'000);
   Numbered source(3);
@@ -271,7 +271,7 @@ TEST_F(UltraleapArray, FallsSilentIfTheRateChangesWhileItPlays) {
   EXPECT_EQ(device->status(), DeviceStatus::Running);
 }
 
-TEST_F(UltraleapArray, KeepsItsRateForFewerPointsAndRefusesMore) {
+TEST_F(UltraleapArray, KeepsItsRateForFewerPointsAndRejectsMore) {
   const auto device = make_ultraleap(setup_of(3));
   Numbered two(2), four(4), seven(7);
   ASSERT_EQ(device->start(two), DeviceStatus::Running);
@@ -295,7 +295,7 @@ TEST_F(UltraleapArray, RepeatsASegment) {
   Listener listener(8'000);
   ASSERT_EQ(device->load_segment(loop, 2), DeviceStatus::Running) << device->problem();
   stand_in::step(20);                               // 400 samples
-  for (FocusSample& s : loop) s.p_D.z() = 0.1998F;  // nearer than a jump
+  for (FocusSample& s : loop) s.p_D.z() = 0.1998F;  // closer than a jump
   ASSERT_EQ(device->load_segment(loop, 2), DeviceStatus::Running);
   stand_in::step(20);
   const auto heard = listener.heard();
@@ -307,7 +307,7 @@ TEST_F(UltraleapArray, RepeatsASegment) {
     ASSERT_NEAR(heard[i].point[1].intensity, given.intensity, 1e-6F);
     const bool is_new = heard[i].point[1].p_D.z() < 0.1999F;
     if (is_new && !changed) {
-      EXPECT_EQ(i % 100, 0U) << "laps stay whole";
+      EXPECT_EQ(i % 100, 0U) << "laps stay complete";
     }
     changed = changed || is_new;
   }

@@ -1,4 +1,4 @@
-// The adapter before it plays: addresses, kits, refusals, the registry.
+// The adapter before playback: addresses, kits, errors, the registry.
 #include <gmock/gmock.h>
 
 #include "prostm/device/device_kinds.hpp"
@@ -31,7 +31,7 @@ TEST(UltraleapAddress, NamesADeviceAndAConnection) {
   EXPECT_THROW(ultraleap_address("USX@tcp:1"), std::invalid_argument);
 }
 
-TEST(UltraleapKit, KnowsWhereTheTrackersSit) {
+TEST(UltraleapKit, KnowsTheTrackersPositions) {
   EXPECT_DOUBLE_EQ(ultraleap_kit("USX", "square")->tracker_y, 0.121);
   EXPECT_DOUBLE_EQ(ultraleap_kit("USI", "")->tracker_y, -0.089);
   EXPECT_DOUBLE_EQ(ultraleap_kit("UHDK5", "Square")->tracker_y, 0.1105);
@@ -39,7 +39,7 @@ TEST(UltraleapKit, KnowsWhereTheTrackersSit) {
   EXPECT_EQ(ultraleap_kit("Something", ""), nullptr);
 }
 
-TEST(UltraleapDecimation, LetsTheEmissionRunAtFortyKilohertzAtLeast) {
+TEST(UltraleapDecimation, LetsTheEmissionRunAt40KilohertzOrMore) {
   for (double rate = 1e3; rate < 1e5; rate *= 1.01) {
     const int factor = ultraleap_decimation(rate);
     EXPECT_GE(rate * factor, 40e3 * (1.0 - 1e-3)) << rate;
@@ -47,7 +47,7 @@ TEST(UltraleapDecimation, LetsTheEmissionRunAtFortyKilohertzAtLeast) {
   }
 }
 
-TEST(LookForUltraleap, ListsTheArraysAndWhoUsesThem) {
+TEST(LookForUltraleap, ListsTheArraysAndTheirUsers) {
   stand_in::Array usi;
   usi.identifier = "USI:7";
   usi.model = "USI";
@@ -76,7 +76,7 @@ TEST(LookForUltraleap, ListsTheArraysAndWhoUsesThem) {
   EXPECT_THAT(look_for_ultraleap(setup_of(4)).words, HasSubstr("sees no array"));
 }
 
-TEST(MakeUltraleap, SaysEachRefusalInASentence) {
+TEST(MakeUltraleap, ExplainsEachErrorInASentence) {
   const std::pair<const char*, const char*> calls[] = {
       {"connect", "service of the Ultraleap Haptics SDK does not answer (told so)"},
       {"addDevice", "'MockDevice:USX' cannot be claimed (told so)"},
@@ -124,10 +124,10 @@ TEST(MakeUltraleap, ChoosesAmongSeveralArrays) {
   EXPECT_EQ(second->info().sample_rate, 5e3);
   EXPECT_EQ(second->info().decimation, 8);
   EXPECT_EQ(ultraleap_info(setup_of(2, "USX:2")).sample_rate, 5e3);
-  EXPECT_EQ(ultraleap_info(setup_of(2)).sample_rate, 5e3) << "opened last";
+  EXPECT_EQ(ultraleap_info(setup_of(2)).sample_rate, 5e3) << "the array opened last";
 }
 
-TEST(DeviceKinds, HasTheArrayWhereTheSdkIs) {
+TEST(DeviceKinds, IncludeTheArrayIfTheSdkIsPresent) {
   stand_in::reset({stand_in::Array{}});
   const DeviceName named = device_named("ultraleap://MockDevice:USX");
   EXPECT_TRUE(named.kind->is_built());

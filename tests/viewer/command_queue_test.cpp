@@ -1,4 +1,4 @@
-/// A command of a page waits until the run has had time for itself.
+/// A page's command waits until the run has had time of its own.
 
 #include "prostm/viewer/detail/command_queue.hpp"
 
@@ -19,7 +19,7 @@ class Queue : public testing::Test {
     return queue_.add(LiveCommand{Kind::Set, 1, control, value}, now_);
   }
   bool ask(Kind kind) { return queue_.add(LiveCommand{kind, 1}, now_); }
-  /// The commands that the run has received by now.
+  /// The commands received by the run so far.
   std::vector<LiveCommand> asked() {
     std::vector<LiveCommand> all;
     LiveCommand command;
@@ -40,15 +40,15 @@ class Queue : public testing::Test {
   CommandQueue::Clock::time_point now_ = CommandQueue::Clock::now();
 };
 
-TEST_F(Queue, HandsTheFirstCommandOverAtOnceAndTheNextAfterTheRunHasRun) {
+TEST_F(Queue, PassesTheFirstCommandAtOnceAndTheNextAfterTheRunHasAdvanced) {
   EXPECT_TRUE(set(3, 1.0));
   EXPECT_EQ(asked().size(), 1U);
   EXPECT_TRUE(set(3, 2.0));
   pass(400ms);
-  EXPECT_TRUE(asked().empty()) << "it has not answered yet";
+  EXPECT_TRUE(asked().empty()) << "the run has not answered yet";
   answer_after(1ms);
   pass(49ms);
-  EXPECT_TRUE(asked().empty()) << "it has run for less than 50 ms";
+  EXPECT_TRUE(asked().empty()) << "the run has advanced less than 50 ms";
   pass(1ms);
   EXPECT_EQ(asked().size(), 1U);
 }
@@ -68,7 +68,7 @@ TEST_F(Queue, KeepsTheNewestValueOfEachControl) {
   EXPECT_EQ(commands[1].value, -2000.0);
 }
 
-TEST_F(Queue, LosesNoStepAndKeepsTheOrder) {
+TEST_F(Queue, DropsNoStepAndKeepsTheOrder) {
   set(0, 0.0);
   asked();
   ask(Kind::Play);
@@ -84,14 +84,14 @@ TEST_F(Queue, LosesNoStepAndKeepsTheOrder) {
   EXPECT_EQ(commands[2].kind, Kind::Pause);
 }
 
-TEST_F(Queue, TakesNoMoreThanCanWait) {
+TEST_F(Queue, IsLimitedInLength) {
   int taken = 0;
   while (taken < 1000 && ask(Kind::Step)) ++taken;
   EXPECT_EQ(taken, 1 + 64);
   pass(999ms);
   EXPECT_EQ(asked().size(), 1U);
   pass(1ms);
-  EXPECT_EQ(asked().size(), 64U) << "a run that does not answer is asked after a second";
+  EXPECT_EQ(asked().size(), 64U) << "without an answer, commands pass after a second";
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// A frame, and the large sections that are sent with it.
+/// A frame, with the large sections sent along with it.
 struct Fixture {
   std::string name;
   ViewFrame frame;
@@ -127,12 +127,12 @@ std::vector<Fixture> fixtures() {
   return all;
 }
 
-/// Returns null for a number that JSON does not have.
+/// Returns null for a number that JSON cannot represent.
 Json number(double value) {
   return std::isnan(value) ? Json(nullptr) : Json(value);
 }
 
-/// Returns the decoder's expected values, in the wire's own units.
+/// Returns the values expected from the decoder, in wire units.
 Json to_json(const Fixture& fixture) {
   const ViewFrame& f = fixture.frame;
   Json json = {{"version", kWireVersion},
@@ -209,8 +209,8 @@ std::string message(const Fixture& fixture) {
   return {out.begin(), out.end()};
 }
 
-// PROSTM_WRITE_FIXTURES=1 rewrites the files, after an intended change of the format.
-TEST(Wire, TheFixturesAreWhatTheEncoderWrites) {
+// PROSTM_WRITE_FIXTURES=1 rewrites the files after an intended change of the format.
+TEST(Wire, FixturesMatchTheEncoder) {
   const bool write = std::getenv("PROSTM_WRITE_FIXTURES") != nullptr;
   for (const Fixture& fixture : fixtures()) {
     SCOPED_TRACE(fixture.name);
@@ -226,7 +226,7 @@ TEST(Wire, TheFixturesAreWhatTheEncoderWrites) {
 
 // Walks through a message by the document alone: the header, then each section by its stated
 // length.
-TEST(Wire, SectionsAreWhereTheDocumentSaysTheyAre) {
+TEST(Wire, SectionsAreWhereTheDocumentStates) {
   for (const Fixture& fixture : fixtures()) {
     SCOPED_TRACE(fixture.name);
     const std::string bytes = message(fixture);
@@ -262,7 +262,7 @@ TEST(Wire, SectionsAreWhereTheDocumentSaysTheyAre) {
   }
 }
 
-TEST(Wire, AllocatesNothingOnceTheBufferHasGrown) {
+TEST(Wire, DoesNotAllocateOnceTheBufferHasGrown) {
   const std::vector<Fixture> all = fixtures();
   std::vector<std::uint8_t> out;
   for (const Fixture& f : all) encode(f.frame, f.with_smoke, f.with_fields, out);
@@ -272,7 +272,7 @@ TEST(Wire, AllocatesNothingOnceTheBufferHasGrown) {
   EXPECT_EQ(guard.allocations(), 0U);
 }
 
-TEST(Wire, EveryNumberHasANameOfItsOwn) {
+TEST(Wire, NumbersHaveDistinctNames) {
   const auto names = view_number_names();
   ASSERT_GE(names.size(), static_cast<std::size_t>(kPlacedNumbers));
   EXPECT_EQ(names[kSpill], "spill");

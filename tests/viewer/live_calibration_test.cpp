@@ -36,8 +36,8 @@ Pose true_pose() {
   return X_DT;
 }
 
-/// A tracker with one hand, whose index tip rests on a corner of the array, or which hovers over
-/// the array's middle for corner −1.
+/// A tracker with one hand, whose index tip rests on a corner of the array. For corner −1 the hand
+/// hovers over the array's middle.
 class TouchingHand final : public HandSource {
  public:
   TouchingHand(const std::atomic<int>& corner, const PipelineSettings& s)
@@ -50,7 +50,7 @@ class TouchingHand final : public HandSource {
     corners_ = {Vec3(low.x(), low.y(), high.z()), Vec3(high.x(), low.y(), high.z()),
                 Vec3(high.x(), high.y(), high.z()), Vec3(low.x(), high.y(), high.z())};
   }
-  /// Returns the place of the tip if the tracker is assumed to stand at X_DT.
+  /// Returns the position of the tip if the tracker's pose is assumed to be X_DT.
   Vec3 tip(int corner, const Pose& X_DT) {
     HandFrame frame;
     hand_->sample(0.0, frame);
@@ -78,12 +78,12 @@ class TouchingHand final : public HandSource {
   std::array<Vec3, 4> corners_;
 };
 
-/// Returns a maker of the run's tracker: a hand that touches `corner`.
+/// Returns a factory for the run's tracker: a hand that touches `corner`.
 test::MakeHand touching(const std::atomic<int>& corner) {
   return [&corner](const PipelineSettings& s) { return std::make_unique<TouchingHand>(corner, s); };
 }
 
-/// Returns the tip of the first hand's index finger [m].
+/// Returns the position of the first hand's index tip [m].
 Vec3 tip_in(const std::string& bytes) {
   constexpr unsigned kOneHand = 1U << 16 | 3U;
   std::size_t at = 16;
@@ -112,7 +112,7 @@ TEST(LiveCalibration, ATrackersPoseIsFoundFromTouches) {
   set(page, "source", "leap");
   ASSERT_TRUE(transport_becomes(page, "base", "leap"));
 
-  // a tracker's states come four times a second
+  // a tracker's states arrive four times a second
   const auto becomes = [&](auto&& condition) {
     for (int i = 0; i < 100; ++i) {
       const Json text = page.next_text();
@@ -152,12 +152,12 @@ TEST(LiveCalibration, ATrackersPoseIsFoundFromTouches) {
   touch(4);
   say("solve");
   ASSERT_TRUE(becomes([](const Json& c) { return !c.at("residual_mm").is_null(); }));
-  EXPECT_TRUE(finger_is_at(hand.tip(3, true_pose()))) << "what is found is used at once";
+  EXPECT_TRUE(finger_is_at(hand.tip(3, true_pose()))) << "the solution is used at once";
   say("begin");
   ASSERT_TRUE(becomes([](const Json& c) { return c.at("marks").at(0).at("taken") == false; }));
   say("cancel");
   ASSERT_TRUE(becomes([](const Json& c) { return c.is_null(); }));
-  EXPECT_TRUE(finger_is_at(hand.tip(3, default_tracker_pose()))) << "what was not saved goes";
+  EXPECT_TRUE(finger_is_at(hand.tip(3, default_tracker_pose()))) << "an unsaved pose is discarded";
 
   say("begin");
   ASSERT_TRUE(becomes([](const Json& c) { return !c.is_null(); }));
@@ -174,10 +174,10 @@ TEST(LiveCalibration, ATrackersPoseIsFoundFromTouches) {
   std::remove(run.pose_file.c_str());
   say("cancel");
   ASSERT_TRUE(becomes([](const Json& c) { return c.is_null(); }));
-  EXPECT_TRUE(finger_is_at(hand.tip(2, true_pose()))) << "what was saved stays";
+  EXPECT_TRUE(finger_is_at(hand.tip(2, true_pose()))) << "a saved pose is kept";
 }
 
-/// Checks that the array is silent for a fifth of a second, from 50 ms after now on, while plans
+/// Checks that the array is silent for 0.2 s, starting 50 ms from now, while plans
 /// continue.
 void expect_silence(const LiveRun& run) {
   const std::int64_t silent = run.device().samples() + 2000, end = silent + 8000;
@@ -212,7 +212,7 @@ TEST(LiveCalibration, TheArrayIsSilentDuringACalibration) {
   say(page, "begin");
   ASSERT_TRUE(calibrates(true));
   expect_silence(run);
-  // the other method has its own emitter, which is silent too
+  // the other method has a separate emitter, which is silent too
   set(page, "method", "am");
   state_with(page, "method", "am");
   expect_silence(run);
@@ -228,7 +228,7 @@ TEST(LiveCalibration, TheArrayIsSilentDuringACalibration) {
     ASSERT_TRUE(calibrates(true));
     expect_silence(run);
   }
-  ASSERT_TRUE(calibrates(false)) << "a calibration ends with its page";
+  ASSERT_TRUE(calibrates(false)) << "closing the page ends the calibration";
   EXPECT_TRUE(eventually([&] { return run.sounds(); }));
 }
 

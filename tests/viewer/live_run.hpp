@@ -1,5 +1,5 @@
 #pragma once
-/// A run in real time with a server, for tests of pages that control it.
+/// A real-time run with a server, for tests of pages that control it.
 
 #include <atomic>
 #include <functional>
@@ -34,7 +34,7 @@ class UntilToldToStop final : public RunObserver {
 /// A run, its server and its reported numbers.
 class LiveRun {
  public:
-  /// @param tracker makes the hands of the source "leap".
+  /// @param tracker creates the hands of the source "leap".
   explicit LiveRun(const PipelineSettings& settings = small_settings(),
                    RunOptions options = for_long(), const MakeHand& tracker = no_tracker);
   ~LiveRun();
@@ -49,7 +49,7 @@ class LiveRun {
   int port() const { return server_->port(); }
   /// Returns the contents of /numbers.json.
   Json numbers() const;
-  /// One of its numbers; none for null, since a test that compares NaN is stopped by its trap.
+  /// One of its numbers; empty for null, since comparing NaN would trap.
   std::optional<double> number(const char* name) const;
   int world_steps() const;
   int plan_updates() const;
@@ -59,7 +59,7 @@ class LiveRun {
   float loudest(std::int64_t first, std::int64_t last) const;
   bool sounds() const;
 
-  std::atomic<double> prediction{-1};  // setting of the hands made last [s]
+  std::atomic<double> prediction{-1};  // setting of the most recent hands [s]
   const std::string pose_file;
 
  private:

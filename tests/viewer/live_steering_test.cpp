@@ -1,4 +1,4 @@
-/// A run in real time with pages that mute it, take its hand, pause it and flood it.
+/// A real-time run with pages that mute it, take its hand, pause it and flood it.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ using test::state_with;
 using test::transport_becomes;
 using testing::HasSubstr;
 
-/// Steps of the world and plan updates, as a frame has them.
+/// Numbers of world steps and plan updates in a frame.
 using Instant = std::pair<std::uint32_t, std::uint32_t>;
 struct RunSeen {
   Instant at;
@@ -35,7 +35,7 @@ RunSeen run_in(const std::string& frame) {
           test::u32_at(frame, kRun + 8)};
 }
 
-TEST(LiveSteering, TheStateSaysWhatTheRunBeganWithAndWhatItAsksFor) {
+TEST(LiveSteering, TheStateHoldsTheSettingsAtTheStartAndNow) {
   LiveRun run;
   Page page(run.port());
   EXPECT_EQ(page.next_text("hello").at("page"), 1);
@@ -64,7 +64,7 @@ TEST(LiveSteering, AnErrorNamesTheControl) {
   EXPECT_FALSE(page.next_text("error").contains("id"));
 }
 
-TEST(LiveSteering, APageMutesTheOutputUntilOneUnmutesIt) {
+TEST(LiveSteering, APageMutesTheOutputUntilAPageUnmutesIt) {
   LiveRun run;
   {
     Page page(run.port());
@@ -73,22 +73,22 @@ TEST(LiveSteering, APageMutesTheOutputUntilOneUnmutesIt) {
     page.say(R"({"type":"mute","on":true})");
     ASSERT_TRUE(eventually([&] { return (run.flags() & kViewMuted) != 0; }));
   }
-  // 50 ms for the queue and the fade; it stays muted though that page has gone
+  // 50 ms for the queue and the fade; it stays muted although that page has closed
   const std::int64_t silent = run.device().samples() + 2000, end = silent + 8000;
   const int updates = run.plan_updates();
   ASSERT_TRUE(eventually([&] { return run.device().samples() >= end; }));
   EXPECT_EQ(run.loudest(silent, end), 0.0F);
-  EXPECT_TRUE(eventually([&] { return run.plan_updates() > updates; })) << "plans go on";
+  EXPECT_TRUE(eventually([&] { return run.plan_updates() > updates; })) << "planning continues";
   EXPECT_EQ(run.number("intensity"), 0.0);
   Page other(run.port());
   EXPECT_NE(run_in(other.next_frame()).flags & kViewMuted, 0U);
   other.say(R"({"type":"mute","on":false})");
   EXPECT_TRUE(eventually([&] { return run.sounds(); }));
-  // frames follow the device by a moment
+  // frames lag slightly behind the device
   EXPECT_TRUE(eventually([&] { return (run.flags() & kViewMuted) == 0; }));
 }
 
-TEST(LiveSteering, APageThatLosesTheHandIsTold) {
+TEST(LiveSteering, APageThatLosesTheHandIsNotified) {
   LiveRun run;
   Page first(run.port()), second(run.port());
   const int one = first.next_text("hello").at("page"), two = second.next_text("hello").at("page");
@@ -135,8 +135,8 @@ TEST(LiveSteering, AHiddenPageReleasesTheHandAndThatIsReported) {
   EXPECT_EQ(summary.hidden_page_hands, 1);
 }
 
-// each message of a hidden page comes a second after the one before
-TEST(LiveSteering, LatePagesDoNotPassTheHandToAndFro) {
+// a hidden page sends its messages a second apart
+TEST(LiveSteering, LatePagesDoNotAlternateInHoldingTheHand) {
   LiveRun run;
   Page first(run.port()), second(run.port());
   const int one = first.next_text("hello").at("page");
@@ -159,8 +159,8 @@ TEST(LiveSteering, LatePagesDoNotPassTheHandToAndFro) {
   EXPECT_GE(run.stop().late_page_hands, 1);
 }
 
-// what a paused page shows is of one step, also while it makes single ones
-TEST(LiveSteering, APauseIsSeenAtOneInstant) {
+// all data that a paused page shows are of one step, even while it makes single steps
+TEST(LiveSteering, APauseShowsOneInstant) {
   LiveRun run;
   Page page(run.port());
   page.say(R"({"type":"rate","hz":60})");
@@ -188,7 +188,7 @@ TEST(LiveSteering, APauseIsSeenAtOneInstant) {
   }
 }
 
-TEST(LiveSteering, AFloodOfSettingsDoesNotStopTheRun) {
+TEST(LiveSteering, AFloodOfSettingsDoesNotStallTheRun) {
   LiveRun run;
   Page page(run.port());
   page.next_text("state");

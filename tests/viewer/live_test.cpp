@@ -1,4 +1,4 @@
-/// A run in real time with a page that controls it: requests show up in the plans.
+/// A real-time run with a page that controls it: requests take effect in the plans.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ bool plan_becomes(Page& page, Condition&& condition) {
   return false;
 }
 
-TEST(Live, TellsHowItStands) {
+TEST(Live, ReportsItsState) {
   LiveRun run;
   Page page(run.port());
   const Json hello = page.next_text("hello");
@@ -61,7 +61,7 @@ TEST(Live, TellsHowItStands) {
   EXPECT_FALSE(control(state, "gain").contains("unit"));
   EXPECT_EQ(control(state, "speed").at("unit"), "m/s");
   EXPECT_EQ(control(state, "speed").at("max"), 8.0);
-  EXPECT_EQ(control(state, "source").at("choices").size(), 4U) << "those that are there";
+  EXPECT_EQ(control(state, "source").at("choices").size(), 4U) << "those available";
   EXPECT_EQ(state.at("transport").at("playing"), true);
   EXPECT_EQ(state.at("transport").at("source"), "scripted");
   EXPECT_TRUE(state.at("tracker").is_null());
@@ -73,7 +73,7 @@ TEST(Live, TellsHowItStands) {
   EXPECT_GT(summary.plans, 0);
 }
 
-TEST(Live, WhatIsTurnedIsSeenInThePlan) {
+TEST(Live, ChangedControlsShowInThePlan) {
   LiveRun run;
   Page page(run.port());
   page.next_text("state");
@@ -93,7 +93,7 @@ TEST(Live, WhatIsTurnedIsSeenInThePlan) {
   EXPECT_GE(summary.skipped_updates, 0);
 }
 
-TEST(Live, PredictionMakesTheHandsAnew) {
+TEST(Live, PredictionRecreatesTheHands) {
   LiveRun run;
   Page page(run.port());
   page.next_text("state");
@@ -103,7 +103,7 @@ TEST(Live, PredictionMakesTheHandsAnew) {
   EXPECT_EQ(run.prediction, 0.0);
 }
 
-TEST(Live, WhatCannotBeIsRefusedInASentenceAndChangesNothing) {
+TEST(Live, InvalidRequestsAreRejectedInASentenceAndChangeNothing) {
   PipelineSettings settings = small_settings();
   settings.plan.draw_rate = 500.0;  // leaves a slow focal point no room for a path
   LiveRun run(settings);
@@ -124,7 +124,7 @@ TEST(Live, WhatCannotBeIsRefusedInASentenceAndChangesNothing) {
   EXPECT_EQ(control(state_with(page, "speed", 8.0), "gain").at("value"), 1.4);
 }
 
-TEST(Live, APausedRunStandsStillAndGoesOnByUpdates) {
+TEST(Live, APausedRunHaltsAndCanBeSteppedByUpdates) {
   LiveRun run;
   Page page(run.port());
   page.next_text("state");
@@ -136,7 +136,7 @@ TEST(Live, APausedRunStandsStillAndGoesOnByUpdates) {
     ASSERT_TRUE(eventually([&] { return (run.flags() & kViewPaused) != 0; }));
     const int steps = run.world_steps();
     updates = run.plan_updates();
-    EXPECT_EQ(steps % 2, 0) << "a pause follows a whole update";
+    EXPECT_EQ(steps % 2, 0) << "a pause follows a complete update";
     EXPECT_TRUE(eventually([&] { return (run.flags() & kViewFading) != 0; }));
     EXPECT_EQ(run.world_steps(), steps);
     page.say(R"({"type":"transport","do":"step"})");
@@ -148,7 +148,7 @@ TEST(Live, APausedRunStandsStillAndGoesOnByUpdates) {
     EXPECT_TRUE(eventually([&] { return run.plan_updates() > updates + 1; }));
   }
   {
-    // a page that connects now sees the smoke too
+    // a page that connects now also receives the smoke
     Page late(run.port());
     EXPECT_TRUE(test::has_section(late.next_frame(), 4));
   }
@@ -156,7 +156,7 @@ TEST(Live, APausedRunStandsStillAndGoesOnByUpdates) {
   EXPECT_TRUE(eventually([&] { return run.plan_updates() > updates + 3; }));
 }
 
-TEST(Live, APauseEndsWhenNobodyLooksAnyMore) {
+TEST(Live, APauseEndsWithItsLastViewer) {
   RunOptions options;
   options.seconds = 3.0;
   options.pause_kept = 0.5;
@@ -165,7 +165,7 @@ TEST(Live, APauseEndsWhenNobodyLooksAnyMore) {
     Page page(run.port());
     page.say(R"({"type":"transport","do":"pause"})");
     EXPECT_TRUE(transport_becomes(page, "playing", false));
-    // a page that watches keeps the pause, however long
+    // a page that watches keeps the pause, for any time
     ASSERT_TRUE(eventually([&] { return (run.flags() & kViewPaused) != 0; }));
     std::this_thread::sleep_for(std::chrono::seconds(1));
     EXPECT_NE(run.flags() & kViewPaused, 0U);
@@ -178,7 +178,7 @@ TEST(Live, APauseEndsWhenNobodyLooksAnyMore) {
   EXPECT_NEAR(summary.seconds, 3.0, 0.021);
 }
 
-TEST(Live, RatesAreThoseOfTheRunHoweverSeldomTheyAreAskedFor) {
+TEST(Live, RatesDoNotDependOnHowOftenTheyAreRequested) {
   LiveRun run;
   EXPECT_TRUE(eventually([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(1200));
@@ -187,9 +187,9 @@ TEST(Live, RatesAreThoseOfTheRunHoweverSeldomTheyAreAskedFor) {
   }));
 }
 
-TEST(Live, TellsHowWellWhatIsFeltRendersTheTarget) {
+TEST(Live, ReportsTheSkillOfTheFeltField) {
   LiveRun run;
-  Page page(run.port());  // it is computed while a page watches
+  Page page(run.port());  // the skill is computed while a page watches
   EXPECT_TRUE(eventually([&] {
     page.next_frame();
     const Json skill = run.numbers().at("numbers").at("felt_skill");
@@ -197,7 +197,7 @@ TEST(Live, TellsHowWellWhatIsFeltRendersTheTarget) {
   }));
 }
 
-TEST(Live, TellsWhatTheGateSays) {
+TEST(Live, ReportsTheVerdictOfTheGate) {
   LiveRun run;
   Page page(run.port());
   EXPECT_TRUE(eventually([&] {
@@ -206,12 +206,12 @@ TEST(Live, TellsWhatTheGateSays) {
            gate.at("force_n") > 0.0;
   }));
   EXPECT_TRUE(eventually([&] { return test::has_section(page.next_frame(), 7); }));
-  // nothing is asked of still air
+  // still air has no required stimulus
   set(page, "scene", "still-air");
   EXPECT_TRUE(eventually([&] { return run.numbers().at("gate").is_null(); }));
 }
 
-TEST(Live, RecordingsAreSoughtIn) {
+TEST(Live, RecordingsCanBeSoughtIn) {
   LiveRun run;
   Page page(run.port());
   page.next_text("state");
@@ -227,7 +227,7 @@ TEST(Live, RecordingsAreSoughtIn) {
   }));
 }
 
-TEST(Live, ThePagesHandTakesOverAndLetsGo) {
+TEST(Live, ThePagesHandReplacesTheSourceUntilReleased) {
   LiveRun run;
   Page page(run.port());
   EXPECT_EQ(page.next_text("state").at("transport").at("base"), "scripted");
@@ -244,7 +244,7 @@ TEST(Live, ThePagesHandTakesOverAndLetsGo) {
   EXPECT_TRUE(transport_becomes(page, "source", "scripted"));
 }
 
-// several people drag sliders at once, while pages come and go
+// several people drag sliders at once, while pages connect and disconnect
 TEST(Live, SurvivesManyChangesAtOnce) {
   LiveRun run;
   std::vector<std::thread> pages;

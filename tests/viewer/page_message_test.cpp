@@ -1,4 +1,4 @@
-/// Every message of a page, good and bad.
+/// All messages of a page, valid and invalid.
 
 #include "prostm/viewer/page_message.hpp"
 
@@ -13,7 +13,7 @@ namespace prostm {
 namespace {
 
 std::string problem_of(const std::string& text) {
-  const test::WithoutTraps without;  // numbers like 1e999
+  const test::WithoutTraps without;  // for numbers like 1e999
   PageMessage message;
   std::string problem;
   return read_page_message(text, message, problem) ? "" : problem;
@@ -36,7 +36,7 @@ TEST(PageMessage, SetTakesNumbersSwitchesAndNames) {
   EXPECT_EQ(std::get<std::string>(set.value), "still-air");
 }
 
-TEST(PageMessage, TransportKnowsFourWords) {
+TEST(PageMessage, TransportHasFourCommands) {
   using Do = TransportMessage::Do;
   EXPECT_EQ(read<TransportMessage>(R"({"type":"transport","do":"play"})").what, Do::Play);
   EXPECT_EQ(read<TransportMessage>(R"({"type":"transport","do":"pause"})").what, Do::Pause);
@@ -103,7 +103,7 @@ TEST(PageMessage, ReportOfTheParticipantsPage) {
   EXPECT_FALSE(report.picture);
 }
 
-TEST(PageMessage, WhatIsNoneIsToldInASentence) {
+TEST(PageMessage, InvalidMessagesAreReportedInASentence) {
   const char* const hand =
       R"({"type":"hand","palm_mm":[0,0,200],"yaw_deg":0,"pitch_deg":0,"roll_deg":0,"closure":0,)";
   const std::pair<std::string, std::string> cases[] = {
@@ -149,15 +149,15 @@ TEST(PageMessage, WhatIsNoneIsToldInASentence) {
       {R"({"type":"study","do":"tune","to":"up","coarse":false})", "less or more"},
       {R"({"type":"study","do":"tune","to":"more"})", "lacks \"coarse\""},
       {R"({"type":"study","do":"explore","scene":-1})", "between 0 and 1000"},
-      {R"({"type":"study","do":"about","about":[]})", "an object of 20 texts"},
-      {R"({"type":"study","do":"about","about":{"age":30}})", "texts of 200 bytes"}};
+      {R"({"type":"study","do":"about","about":[]})", "an object of at most 20 texts"},
+      {R"({"type":"study","do":"about","about":{"age":30}})", "at most 200 bytes"}};
   for (const auto& [text, expected] : cases) {
     SCOPED_TRACE(text.substr(0, 100));
     EXPECT_NE(problem_of(text).find(expected), std::string::npos) << problem_of(text);
   }
 }
 
-TEST(PageMessage, DeepNestingIsJustNoMessage) {
+TEST(PageMessage, DeepNestingIsAnInvalidMessage) {
   EXPECT_FALSE(problem_of(std::string(4000, '[')).empty());
   EXPECT_FALSE(problem_of(std::string(2000, '[') + std::string(2000, ']')).empty());
 }

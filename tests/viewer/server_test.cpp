@@ -1,4 +1,4 @@
-/// The server, and pages without browsers.
+/// The server, tested with pages that are not browsers.
 
 #include "prostm/viewer/server.hpp"
 
@@ -48,7 +48,7 @@ class Server : public testing::Test {
   int port_ = server_.port();
 };
 
-TEST_F(Server, TellsWhenItHasFailed) {
+TEST_F(Server, ReportsFailure) {
   EXPECT_NO_THROW(server_.check());
   source_.fails = true;
   get(port_, "/numbers.json");
@@ -65,7 +65,7 @@ TEST_F(Server, TellsWhenItHasFailed) {
 
 // ---- HTTP ----
 
-TEST_F(Server, GivesThePagesFilesByTheirExactPathsAlone) {
+TEST_F(Server, ServesThePagesFilesByTheirExactPathsOnly) {
   EXPECT_EQ(server_.url(), "http://127.0.0.1:" + std::to_string(port_) + "/");
   EXPECT_TRUE(server_.loopback());
   for (const char* target : {"/", "/index.html", "/?x=1"}) {
@@ -90,7 +90,7 @@ TEST_F(Server, HeadHasTheLengthAndNoBody) {
   EXPECT_THAT(answer, Not(HasSubstr("<title>")));
 }
 
-TEST_F(Server, RefusesOtherMethodsBodiesAndNonsense) {
+TEST_F(Server, RejectsOtherMethodsBodiesAndMalformedRequests) {
   for (const char* method : {"POST", "PUT", "DELETE", "OPTIONS", "TRACE", "BREW"}) {
     const std::string answer = get(port_, "/", "", method);
     EXPECT_EQ(status_of(answer), 405) << method;
@@ -106,7 +106,7 @@ TEST_F(Server, RefusesOtherMethodsBodiesAndNonsense) {
   EXPECT_EQ(status_of(get(port_, "http://127.0.0.1/")), 400);
 }
 
-TEST_F(Server, RefusesNamesThatAreNotItsOwn) {
+TEST_F(Server, RejectsForeignHostNames) {
   for (const char* host : {"evil.example", "evil.example:8470", "127.0.0.1.evil.example",
                            "192.168.1.7", "localhost.evil", "[::2]", "[::1", "127.0.0.1:80x",
                            "[::1]evil.example", "[::1]:", "[::1]:80x", "127.0.0.1:", "::1"}) {
@@ -116,7 +116,7 @@ TEST_F(Server, RefusesNamesThatAreNotItsOwn) {
     EXPECT_EQ(status_of(get(port_, "/", "Host: " + std::string(host) + "\r\n")), 200) << host;
 }
 
-TEST_F(Server, RefusesRequestsThatSayTwiceWhereTheyGoOrComeFrom) {
+TEST_F(Server, RejectsRequestsWithARepeatedHostOrOrigin) {
   const std::string start = "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n";
   for (const char* second : {"Host: 127.0.0.1\r\n", "Host: evil.example\r\n",
                              "Origin: http://127.0.0.1\r\nOrigin: http://evil.example\r\n"}) {
@@ -126,7 +126,7 @@ TEST_F(Server, RefusesRequestsThatSayTwiceWhereTheyGoOrComeFrom) {
   }
 }
 
-TEST_F(Server, RefusesOtherSites) {
+TEST_F(Server, RejectsOtherOrigins) {
   for (const char* origin : {"http://evil.example", "https://127.0.0.1", "null",
                              "http://127.0.0.1:1", "http://localhost"}) {
     EXPECT_EQ(status_of(get(port_, "/numbers.json", "Origin: " + std::string(origin) + "\r\n")),
@@ -141,7 +141,7 @@ TEST_F(Server, RefusesOtherSites) {
   EXPECT_EQ(own.next_text().at("type"), "hello");
 }
 
-TEST_F(Server, KeepsAConnectionForTheNextRequest) {
+TEST_F(Server, KeepsAConnectionAlive) {
   const std::string request = "GET /page.js HTTP/1.1\r\nHost: localhost\r\n\r\n";
   const std::string last = "GET /nowhere HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
   const std::string answer = test::raw_exchange(port_, request + request + last);
@@ -149,7 +149,7 @@ TEST_F(Server, KeepsAConnectionForTheNextRequest) {
   EXPECT_THAT(answer, HasSubstr("404"));
 }
 
-TEST_F(Server, TellsNumbersByName) {
+TEST_F(Server, ServesNumbersByName) {
   const std::string answer = get(port_, "/numbers.json");
   const auto json = test::Json::parse(answer.substr(answer.find("\r\n\r\n") + 4));
   EXPECT_EQ(json.at("numbers").at("world_ms"), 7.25);
@@ -157,8 +157,8 @@ TEST_F(Server, TellsNumbersByName) {
   EXPECT_EQ(json.at("sequence"), 1);
 }
 
-/// A hidden page asks for one frame a second, which must not be the rate of what others read.
-TEST_F(Server, NumbersHaveARateOfTheirOwn) {
+/// A hidden page requests one frame a second, which must not limit the rate of other readers.
+TEST_F(Server, NumbersHaveTheirOwnRate) {
   Page page(port_);
   page.say(R"({"type":"rate","hz":1})");
   ASSERT_TRUE(eventually([&] { return server_.stats().pages == 1; }));
@@ -167,10 +167,10 @@ TEST_F(Server, NumbersHaveARateOfTheirOwn) {
   EXPECT_TRUE(eventually([&] {
     get(port_, "/numbers.json");
     return source_.refreshed - asked > server_.stats().frames - frames + 3;
-  })) << "only frames of the page make numbers new";
+  })) << "only the page's frames update the numbers";
 }
 
-TEST(ServerWithoutAPage, SaysSo) {
+TEST(ServerWithoutAPage, ReportsTheMissingPage) {
   StandIn source;
   const ViewServer server(anywhere(), source, {});
   const std::string answer = get(server.port(), "/");
@@ -191,11 +191,11 @@ TEST_F(Server, APageGetsHelloStateAndWholeFrames) {
   EXPECT_TRUE(test::has_section(first, 5));
   const std::string second = page.next_frame();
   EXPECT_GT(test::u32_at(second, 8), test::u32_at(first, 8));
-  EXPECT_TRUE(test::has_section(second, 4)) << "the smoke is new every time";
-  EXPECT_FALSE(test::has_section(second, 5)) << "the field is not";
+  EXPECT_TRUE(test::has_section(second, 4)) << "the smoke changes in every frame";
+  EXPECT_FALSE(test::has_section(second, 5)) << "the field does not";
 }
 
-TEST_F(Server, HasARoomForGuestsWhereAsked) {
+TEST_F(Server, ServesGuestsIfConfigured) {
   const std::string upgrade = "Connection: Upgrade\r\nUpgrade: websocket\r\n";
   EXPECT_EQ(status_of(get(port_, "/guest/live", upgrade)), 404);
   ViewSettings settings = anywhere();
@@ -211,10 +211,10 @@ TEST_F(Server, HasARoomForGuestsWhereAsked) {
   source.state_version = 2;
   EXPECT_EQ(main.next_text("state").at("version"), 2);
   for (int i = 0; i < 10; ++i) main.next_frame();
-  EXPECT_FALSE(guest.hears()) << "neither states nor frames";
+  EXPECT_FALSE(guest.hears()) << "guests get neither states nor frames";
 }
 
-TEST_F(Server, TellsEveryPageOfANewState) {
+TEST_F(Server, SendsANewStateToEveryPage) {
   Page one(port_), two(port_);
   one.next_text("state");
   two.next_text("state");
@@ -223,7 +223,7 @@ TEST_F(Server, TellsEveryPageOfANewState) {
   EXPECT_EQ(two.next_text("state").at("version"), 2);
 }
 
-TEST_F(Server, HandsMessagesOnAndAnswersWhatIsNone) {
+TEST_F(Server, ForwardsMessagesAndAnswersInvalidOnes) {
   Page page(port_);
   page.say(R"({"type":"set","id":"gain","value":2})");
   page.say("nonsense");
@@ -238,7 +238,7 @@ TEST_F(Server, HandsMessagesOnAndAnswersWhatIsNone) {
   EXPECT_EQ(page.next_text("error").at("sentence"), "too late");
 }
 
-TEST_F(Server, ClosesOnAHundredMessagesOfNonsense) {
+TEST_F(Server, ClosesAfterAHundredInvalidMessages) {
   Page page(port_);
   for (int i = 0; i < 99; ++i) page.say("nonsense");
   page.say(R"({"type":"rate","hz":30})");
@@ -252,7 +252,7 @@ TEST_F(Server, ClosesOnAHundredMessagesOfNonsense) {
   EXPECT_EQ(source_.forgotten, 1);
 }
 
-TEST_F(Server, ClosesOnOversizedAndBrokenFrames) {
+TEST_F(Server, ClosesOnOversizedAndMalformedFrames) {
   {
     Page page(port_);
     page.say(std::string(4097, ' '));
@@ -274,7 +274,7 @@ TEST_F(Server, ClosesOnOversizedAndBrokenFrames) {
   EXPECT_EQ(page.next_text().at("type"), "hello");
 }
 
-TEST_F(Server, WatchesOnlyWhileSomebodyLooks) {
+TEST_F(Server, WatchesOnlyWhileAPageIsOpen) {
   EXPECT_FALSE(source_.watched);
   {
     Page one(port_);
@@ -290,7 +290,7 @@ TEST_F(Server, WatchesOnlyWhileSomebodyLooks) {
   EXPECT_FALSE(source_.watched);
 }
 
-TEST(ServerLimits, TakesNoMorePagesThanItIsTold) {
+TEST(ServerLimits, AcceptsNoMoreThanTheConfiguredPages) {
   StandIn source;
   ViewSettings settings = anywhere();
   settings.max_pages = 2;
@@ -301,7 +301,7 @@ TEST(ServerLimits, TakesNoMorePagesThanItIsTold) {
   EXPECT_THROW(Page(server.port()), std::runtime_error);
 }
 
-TEST(ServerLimits, EndsRequestsThatNeverCome) {
+TEST(ServerLimits, EndsRequestsThatNeverArrive) {
   StandIn source;
   ViewSettings settings = anywhere();
   settings.request_time = 0.2;
@@ -309,8 +309,8 @@ TEST(ServerLimits, EndsRequestsThatNeverCome) {
   EXPECT_EQ(test::raw_exchange(server.port(), "GET / HT"), "");
 }
 
-// One page stops reading: the others continue, and after a while it is dropped.
-TEST(ServerLimits, APageThatStopsReadingHoldsUpNobody) {
+// One page stops reading: the others continue, and after a while that page is dropped.
+TEST(ServerLimits, APageThatStopsReadingDelaysNoOther) {
   StandIn source(96);  // frames of 0.9 MB fill the kernel's buffers at once
   ViewSettings settings = anywhere();
   settings.stall_time = 3.0;
@@ -333,14 +333,14 @@ TEST(ServerLimits, APageThatStopsReadingHoldsUpNobody) {
   }
   for (std::thread& other : others) other.join();
   EXPECT_EQ(whole, 20 * kOthers);
-  EXPECT_GT(server.stats().skipped_frames, 0) << "those of the page that stopped";
+  EXPECT_GT(server.stats().skipped_frames, 0) << "frames for the page that stopped";
   EXPECT_TRUE(eventually([&] { return server.stats().dropped_pages == 1; }));
   EXPECT_TRUE(eventually([&] { return server.stats().pages == 0; }));
 }
 
 // ---- listening address ----
 
-TEST(ServerPort, OneThatIsInUseIsRefusedInASentence) {
+TEST(ServerPort, APortInUseIsRejectedInASentence) {
   StandIn source, other;
   const ViewServer first(anywhere(), source, some_files());
   ViewSettings settings;
@@ -354,7 +354,7 @@ TEST(ServerPort, OneThatIsInUseIsRefusedInASentence) {
   }
 }
 
-TEST(ServerPort, ADefaultThatIsInUseGivesTheNextOne) {
+TEST(ServerPort, ADefaultPortInUseGivesTheNextOne) {
   StandIn source, other;
   const ViewServer first(ViewSettings{}, source, some_files());
   const ViewServer second(ViewSettings{}, other, some_files());
@@ -374,7 +374,7 @@ TEST(ServerPort, IsFreeAgainAtOnce) {
   }
 }
 
-TEST(ServerPort, BadAddressesAreRefused) {
+TEST(ServerPort, InvalidAddressesAreRejected) {
   StandIn source;
   for (const char* address : {"", "localhost", "127.0.0", "256.0.0.1", "192.0.2.1"}) {
     ViewSettings settings = anywhere();
@@ -386,7 +386,7 @@ TEST(ServerPort, BadAddressesAreRefused) {
   EXPECT_THROW(ViewServer(settings, source, some_files()), InputError);
 }
 
-TEST(ServerPort, OnEveryAddressTakesAddressesButNoNames) {
+TEST(ServerPort, AllAddressesMeansNumericHostsOnly) {
   StandIn source;
   ViewSettings settings = anywhere();
   settings.address = "0.0.0.0";

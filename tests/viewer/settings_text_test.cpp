@@ -1,4 +1,4 @@
-/// A run's settings as a settings file.
+/// A run's settings in the form of a settings file.
 
 #include "prostm/viewer/detail/settings_text.hpp"
 
@@ -17,7 +17,7 @@ TEST(SettingsText, IsEmptyForTheDefaults) {
   EXPECT_EQ(changed_settings({}), "");
 }
 
-TEST(SettingsText, SaysWhatDiffersAlone) {
+TEST(SettingsText, ContainsOnlyDifferences) {
   PipelineSettings s;
   s.plan.preset = Preset::Fast;
   s.fluid.jet_speed = 1.5;
@@ -27,7 +27,7 @@ TEST(SettingsText, SaysWhatDiffersAlone) {
             "[plan]\npreset = \"fast\"\n");
 }
 
-TEST(SettingsText, ReadsBackToTheBit) {
+TEST(SettingsText, ReadsBackExactly) {
   PipelineSettings s;
   s.scene = "four-plumes";
   s.array = "an \"array\".json";

@@ -16,7 +16,7 @@ using test::Json;
 using test::Page;
 using testing::HasSubstr;
 
-/// A study of a hand that is held still, on threads and with a server of its own.
+/// A study with a hand at rest, on its own threads and with its own server.
 class LiveStudy {
  public:
   explicit LiveStudy(const std::string& more)
@@ -57,7 +57,7 @@ class LiveStudy {
       if (line["kind"] == "trial") found.push_back(line);
     return found;
   }
-  /// Waits until plans of now press on the hand and the session has seen one; the page reports.
+  /// Waits until current plans press on the hand and the session got one; the page reports.
   void wait_for_pressure(Page& page, const std::string& report) {
     const auto wait_for = [&](const std::atomic<int>& count, int more) {
       for (const int end = count + more; count < end;) {
@@ -74,7 +74,7 @@ class LiveStudy {
   }
 
  private:
-  /// Counts what the session has seen.
+  /// Counts calls to the session.
   struct CountingView final : StudyView {
     using StudyView::StudyView;
     bool refresh_state(Room room, std::string& state) override {
@@ -116,7 +116,7 @@ class LiveStudy {
   std::thread thread_;
 };
 
-/// The next state of a page in which the session is at a phase.
+/// The next state of a page with the session in a phase.
 Json at_phase(Page& page, const std::string& phase) {
   for (;;) {
     Json state = page.next_text("study");
@@ -127,7 +127,7 @@ Json at_phase(Page& page, const std::string& phase) {
 const std::string kReport = R"({"type":"page","visible":true,"noise":"off","picture":true})";
 const std::string kWithNoise = R"({"type":"page","visible":true,"noise":"playing","picture":true})";
 
-TEST(StudyView, LeadsARunThroughTheTrialsAndKeepsThemFromBothPages) {
+TEST(StudyView, TakesARunThroughTheTrialsAndHidesThemFromBothPages) {
   LiveStudy study(
       "methods = \"within\"\n[training]\nseconds = 0\n[trials]\nrepeats = 1\nrest = "
       "0.1\nsettle = 0.5\ngate = \"off\"\n");
@@ -136,7 +136,7 @@ TEST(StudyView, LeadsARunThroughTheTrialsAndKeepsThemFromBothPages) {
   EXPECT_EQ(at_phase(experimenter, "ready").at("room"), "experimenter");
   participant.say(kReport);
   participant.say(R"({"type":"study","do":"next"})");
-  EXPECT_EQ(participant.next_text("error").at("sentence"), "the experimenter does that");
+  EXPECT_EQ(participant.next_text("error").at("sentence"), "only the experimenter can do that");
   experimenter.say(R"({"type":"set","id":"gain","value":1})");
   EXPECT_THAT(experimenter.next_text("error").at("sentence").get<std::string>(),
               HasSubstr("protocol"));
@@ -162,14 +162,14 @@ TEST(StudyView, LeadsARunThroughTheTrialsAndKeepsThemFromBothPages) {
   for (std::size_t i = 0; i < order.size(); ++i) {
     EXPECT_EQ(trials[i]["scene"] == "one-plume", order[i].scene == 0);
     EXPECT_EQ(trials[i]["method"] == "am", order[i].method == 0);
-    EXPECT_GT(trials[i]["target_mn"].get<double>(), 0.0) << "the smoke pressed on the hand";
+    EXPECT_GT(trials[i]["target_mn"].get<double>(), 0.0) << "smoke pressed on the hand";
     EXPECT_GT(trials[i]["rendered_mn"].get<double>(), 0.0);
   }
   experimenter.say(R"({"type":"study","do":"next"})");
   study.wait();
 }
 
-/// The next state of the experimenter's page that a condition holds for.
+/// The next state of the experimenter's page that meets a condition.
 Json state_with(Page& page, const std::function<bool(const Json&)>& holds) {
   for (;;) {
     Json state = page.next_text("study");
@@ -177,7 +177,7 @@ Json state_with(Page& page, const std::function<bool(const Json&)>& holds) {
   }
 }
 
-TEST(StudyView, HoldsTrialsUntilThePageReportsThatTheNoisePlays) {
+TEST(StudyView, HoldsTrialsUntilThePageReportsTheNoise) {
   LiveStudy study(
       "[training]\nseconds = 0\n[trials]\nnoise = true\nrest = 0.1\nsettle = 0.5\ngate = "
       "\"off\"\n");
@@ -199,7 +199,7 @@ TEST(StudyView, HoldsTrialsUntilThePageReportsThatTheNoisePlays) {
   state_with(experimenter, needs("noise does not play"));
   participant->say(kWithNoise);
   at_phase(experimenter, "presenting");
-  participant.reset();  // as by a reload
+  participant.reset();  // as in a reload
   at_phase(experimenter, "settling");
   state_with(experimenter, needs("not open"));
   Page again(study.port(), "", "", "/guest/live");
@@ -210,7 +210,7 @@ TEST(StudyView, HoldsTrialsUntilThePageReportsThatTheNoisePlays) {
   EXPECT_EQ(study.trials().at(0)["page"]["interrupted"], 1);
 }
 
-TEST(StudyView, ShowsTheSimulationInTrainingWithoutTheMethod) {
+TEST(StudyView, ShowsTheSimulationInTrainingButNotTheMethod) {
   LiveStudy study("[training]\nseconds = 600\n");
   Page experimenter(study.port()), participant(study.port(), "", "", "/guest/live");
   std::string frame;

@@ -1,5 +1,5 @@
 #pragma once
-/// A page and a view source for tests of the server.
+/// A page and a source of frames for tests of the server.
 
 #include <atomic>
 #include <deque>
@@ -20,7 +20,7 @@ namespace prostm::test {
 
 using Json = nlohmann::json;
 
-/// A source without a run: frames count up, and the pages' requests are kept.
+/// A source without a run: frames are numbered, and the pages' requests are stored.
 class StandIn final : public ViewSource {
  public:
   explicit StandIn(std::uint32_t smoke_cells = 32) { smoke_cells_ = smoke_cells; }
@@ -86,19 +86,19 @@ class StandIn final : public ViewSource {
   std::deque<std::pair<std::uint32_t, std::string>> refusals_;
 };
 
-/// Returns the answer of a connection to raw bytes, until it closes or, with `enough`, until that
-/// many bytes have come.
+/// Returns the response of a connection to raw bytes, until it closes or, with `enough`, until that
+/// many bytes have arrived.
 std::string raw_exchange(int port, const std::string& bytes,
                          std::size_t enough = std::string::npos);
 
-/// Returns the status of the answer to one request; 0 without an answer.
+/// Returns the status of the response to one request; 0 without a response.
 int status_of(const std::string& answer);
 
 /// Sends a GET of a target with "Connection: close".
 std::string get(int port, const std::string& target, const std::string& headers = "",
                 const std::string& method = "GET");
 
-/// A page without a browser. Reads block; a test that waits in vain is ended by its time limit.
+/// A page without a browser. Reads block; a test that waits in vain fails by its time limit.
 class Page {
  public:
   /// @throws std::runtime_error if it is refused.
@@ -107,17 +107,17 @@ class Page {
   ~Page();
 
   void say(const std::string& text);
-  /// Sends bytes as they are, without the frame of a message.
+  /// Sends bytes as they are, without message framing.
   void send_raw(const std::string& bytes);
-  /// Returns the next message of a kind and skips others. @throws if the connection closes.
+  /// Returns the next message of a kind, skipping others. @throws if the connection closes.
   std::string next(bool text);
   std::string next_frame() { return next(false); }
   Json next_text() { return Json::parse(next(true)); }
   /// Returns the next text of a type.
   Json next_text(const std::string& type);
-  /// Whether anything has arrived and was not read.
+  /// Whether anything unread has arrived.
   bool hears() const;
-  /// Reads the messages that have arrived.
+  /// Reads all messages that have arrived.
   void catch_up();
   /// Reads until the server closes the connection.
   void read_to_the_end();
@@ -130,9 +130,9 @@ class Page {
 /// A little-endian number in a frame.
 std::uint32_t u32_at(const std::string& bytes, std::size_t at);
 
-/// Returns how many things a section of a frame has; −1 without such a section.
+/// Returns the number of items in a section of a frame; −1 without such a section.
 int section_count(const std::string& bytes, unsigned id);
-/// Returns whether a frame has a section.
+/// Returns whether a frame contains a section.
 bool has_section(const std::string& bytes, unsigned id);
 
 }  // namespace prostm::test

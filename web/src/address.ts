@@ -1,25 +1,25 @@
-/// The part of the page's state that stands in its address, after the #, to be shared and reloaded.
+/// The part of the page's state that is kept in its address, after the #, so that it can be shared and reloaded.
 
 import type { Control, Value } from "./messages";
 
 export const kThemes = ["system", "light", "dark"] as const;
 export type Theme = (typeof kThemes)[number];
 export const kPictures = ["auto", "on", "off"] as const;
-/// Whether the picture in three dimensions is drawn; "auto": unless it starves the run.
+/// Whether the three-dimensional picture is drawn; "auto": unless drawing it slows the run down.
 export type PictureMode = (typeof kPictures)[number];
 export const kSpans = [10, 30, 120] as const;
 
 export interface PageState {
-  settings: Record<string, string>; // of the program, by control, as they differ from the run's start
-  eye?: number[]; // azimuth, elevation [degrees], distance, x, y, z of what it looks at [mm]
+  settings: Record<string, string>; // by control; only those that differ from the run's start
+  eye?: number[]; // azimuth, elevation [degrees], distance, and x, y, z of the view's target [mm]
   theme?: Theme;
   large?: boolean;
-  folded?: string[]; // groups that are closed
+  folded?: string[]; // closed groups
   skin?: string;
   picture?: PictureMode;
-  scale?: number; // at which the colours are locked [Pa]
-  span?: number; // of the strips [s]
-  still?: boolean; // holds the page as it is, for pictures
+  scale?: number; // end of the locked colour scale [Pa]
+  span?: number; // time that the strips show [s]
+  still?: boolean; // holds the page still, for screenshots
 }
 
 const kControl = "set.";
@@ -28,7 +28,7 @@ function oneOf<T extends string>(all: readonly T[], value: string | null): T | u
   return all.find((v) => v === value);
 }
 
-/// Reads an address's hash; what is no value of its key is left out.
+/// Reads an address's hash. Values that are invalid for their key are ignored.
 export function readAddress(hash: string): PageState {
   const query = new URLSearchParams(hash.replace(/^#/, ""));
   const state: PageState = { settings: {} };
@@ -69,12 +69,12 @@ export function writeAddress(state: PageState): string {
   return parts.length > 0 ? `#${parts.join("&")}` : "";
 }
 
-/// A control's value as the address has it: 8.7, not 8.700000000000001.
+/// A control's value as written in the address: 8.7, not 8.700000000000001.
 export function inWords(value: Value): string {
   return typeof value === "number" ? String(Number(value.toPrecision(10))) : String(value);
 }
 
-/// Controls that are not as the run began.
+/// Controls that differ from the run's start.
 export function changedSettings(controls: Control[]): Record<string, string> {
   const changed = controls.filter((c) => inWords(c.value) !== inWords(c.default));
   return Object.fromEntries(changed.map((c) => [c.id, inWords(c.value)]));
@@ -85,7 +85,7 @@ export interface Asked {
   value: Value;
 }
 
-/// Returns the settings to change so that the controls are as an address asks; those that do not exist are left out.
+/// Returns the settings to change so that the controls match an address; unknown controls are ignored.
 export function askedSettings(controls: Control[], settings: Record<string, string>): Asked[] {
   return controls.flatMap<Asked>((control) => {
     const asked = settings[control.id];
@@ -101,13 +101,13 @@ export class Address {
   readonly state = readAddress(location.hash);
   private waiting: number | undefined;
 
-  /// Changes what `change` names; undefined takes it out. Other parts of the state stay.
+  /// Changes the entries of `change`; an undefined value removes its entry. The rest of the state stays.
   set(change: { [K in keyof PageState]?: PageState[K] | undefined }): void {
     for (const [key, value] of Object.entries(change)) {
       if (value === undefined) delete (this.state as unknown as Record<string, unknown>)[key];
       else (this.state as unknown as Record<string, unknown>)[key] = value;
     }
-    // browsers allow few changes a second
+    // browsers limit how often the address may change
     this.waiting ??= window.setTimeout(() => {
       this.waiting = undefined;
       this.write();

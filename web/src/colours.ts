@@ -1,4 +1,4 @@
-/// The colours of all fields and paths: those of the figures (src/figure/colours.cpp), computed here in the same way.
+/// The colours of all fields and paths, computed as those of the figures are (src/figure/colours.cpp).
 
 export type Rgb = [number, number, number]; // sRGB, 0 to 1
 
@@ -17,7 +17,7 @@ function linearSrgb(lightness: number, a: number, b: number): Rgb {
   ];
 }
 
-/// The colour with this lightness and hue, and the most chroma up to `chroma` that a screen can show.
+/// The colour with this lightness and hue, and the largest chroma, at most `chroma`, that a screen can show.
 function screenColour(lightness: number, hueDegrees: number, chroma: number): Rgb {
   const hue = (hueDegrees * Math.PI) / 180;
   for (let c = chroma; ; c -= 0.002) {
@@ -26,20 +26,20 @@ function screenColour(lightness: number, hueDegrees: number, chroma: number): Rg
   }
 }
 
-/// Pressures: lightness grows evenly from dark violet to yellow, so that equal steps look equal, also in grey.
+/// Pressures: lightness increases evenly from dark violet to yellow, so that equal steps look equal, in grey as well.
 export function fieldColour(t: number): Rgb {
   const x = clamp01(t);
   return screenColour(0.24 + 0.7 * x, 305 - 203 * x, 0.16);
 }
 
-/// Differences, t from −1 (too little, blue) to 1 (too much, orange), equally far from the middle in lightness and chroma.
+/// Differences, t from −1 (too little, blue) to 1 (too much, orange), symmetric in lightness and chroma.
 export function differenceColour(t: number, dark: boolean): Rgb {
   const x = Math.min(1, Math.abs(t));
   const lightness = dark ? 0.3 + 0.48 * x : 0.95 - 0.4 * x;
   return screenColour(lightness, t < 0 ? 250 : 50, 0.18 * x ** 0.8);
 }
 
-/// The colour of path i: told apart by people of any colour vision (M. Okabe and K. Ito, "Color universal design", 2008).
+/// The colour of path i, distinguishable with any colour vision (M. Okabe and K. Ito, "Color universal design", 2008).
 const kPathColours: Rgb[] = [
   [0.835, 0.369, 0.0], [0.0, 0.447, 0.698], [0.0, 0.62, 0.451], [0.8, 0.475, 0.655],
   [0.902, 0.624, 0.0], [0.337, 0.706, 0.914], [0.35, 0.25, 0.2], [0.75, 0.7, 0.1],

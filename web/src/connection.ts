@@ -1,4 +1,4 @@
-/// The WebSocket to the program: what it last said, and new attempts when it is gone.
+/// The WebSocket to the program: keeps the newest messages, and reconnects when the connection is lost.
 
 import { parseMessage, type Hello, type PageMessage, type State } from "./messages";
 import type { Study } from "./study/messages";
@@ -10,9 +10,9 @@ export interface Listeners {
   frame(frame: Frame): void;
   hello(hello: Hello): void;
   state(state: State): void;
-  study?(study: Study): void; // of a run that is a study
+  study?(study: Study): void; // only in a study
   error(sentence: string, control?: string): void;
-  /// what to tell whoever looks at the page; "" when all is well
+  /// `sentence`: shown on the page; "" when all is well
   link(link: Link, sentence: string): void;
 }
 
@@ -22,9 +22,9 @@ export class Connection {
   frame: Frame | null = null;
   hello: Hello | null = null;
   state: State | null = null;
-  frames = 0; // read, since the page was opened
-  refused = 0; // frames that were not read
-  opened = 0; // connections, since the page was opened
+  frames = 0; // decoded since the page was opened
+  refused = 0; // frames that could not be decoded
+  opened = 0; // connections since the page was opened
   private socket: WebSocket | null = null;
   private wait = kFirstWait;
   private rate = 30;
@@ -60,20 +60,20 @@ export class Connection {
 
   get isOpen(): boolean { return this.socket?.readyState === WebSocket.OPEN; }
 
-  /// @return whether it went out.
+  /// @return whether the message was sent.
   send(message: PageMessage): boolean {
     if (!this.isOpen) return false;
     this.socket?.send(JSON.stringify(message));
     return true;
   }
 
-  /// Frames that this page wants while somebody sees it [Hz].
+  /// Frame rate that this page requests while it is visible [Hz].
   setRate(hz: number): void {
     if (hz === this.rate) return;
     this.rate = hz;
     this.sendRate();
   }
-  /// A page that nobody sees asks for little.
+  /// A hidden page requests one frame a second.
   sendRate(): void { this.send({ type: "rate", hz: document.hidden ? 1 : this.rate }); }
 
   private readFrame(decoder: Decoder, data: ArrayBuffer): void {

@@ -1,4 +1,4 @@
-/// Making and finding elements.
+/// Functions that make and find elements.
 
 type Child = Node | string;
 type Attributes = Record<string, string | number | boolean | undefined>;
@@ -15,14 +15,14 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/// An element of index.html.
+/// Returns an element of index.html.
 export function find<T extends HTMLElement>(id: string): T {
   const element = document.getElementById(id);
   if (element === null) throw new Error(`the page has no element ${id}`);
   return element as T;
 }
 
-/// Puts a text where another one stands; the same text is left alone, so that nothing is read aloud twice.
+/// Sets a text. An unchanged text is left alone, so that screen readers do not repeat it.
 export function setText(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }

@@ -1,4 +1,4 @@
-/// When what is drawn: the picture as often as the run can spare, planes and numbers when there is something new.
+/// Decides when to draw: the picture as often as the run can spare, planes and numbers when new data arrive.
 
 import type { PictureMode } from "./address";
 import { find, setText } from "./dom";
@@ -6,14 +6,14 @@ import type { Graphics, View } from "./scene/view";
 import type { Frame } from "./wire";
 
 export interface Parts {
-  /// planes and numbers
+  /// draws planes and numbers
   panels(frame: Frame, now: number): void;
-  /// @param due whether it is time for them to move on.
+  /// @param due whether their interval has passed.
   strips(now: number, due: boolean): void;
   mode(): PictureMode;
-  /// the run keeps its rates
+  /// whether the run meets its rates
   held(): boolean;
-  /// frames a second that are of use
+  /// frames per second that the page can use
   rate(hz: number): void;
 }
 
@@ -37,7 +37,7 @@ export class Drawing {
   private panelsAt = 0;
   private stripsAt = 0;
   private before = 0;
-  private off = false; // the picture, for the run's sake
+  private off = false; // the picture is off for the run's sake
 
   constructor(private readonly view: View, private readonly parts: Parts) {
     window.requestAnimationFrame((now) => this.draw(now));
@@ -45,9 +45,9 @@ export class Drawing {
 
   show(frame: Frame): void { this.frame = frame; }
   get shown(): Frame | null { return this.frame; }
-  /// Draws what it has again: it looks different.
+  /// Redraws everything in a new look.
   again(): void { this.inPanels = this.inView = null; }
-  /// The picture comes back if it was off by itself, or the browser had no graphics context to give.
+  /// Turns the picture on again if it was switched off automatically, or had no graphics context.
   begin(): void {
     this.off = false;
     this.view.begin();
@@ -75,7 +75,7 @@ export class Drawing {
     const drawn = wished && view.graphics === "ready";
     this.tell(drawn, mode);
     this.parts.rate(!drawn ? 10 : view.pace.slow ? 15 : 30);
-    const wanted = this.frame !== null && this.inView === null; // the first frame, and what was asked for, wait for no pace
+    const wanted = this.frame !== null && this.inView === null; // the first frame and user requests ignore the pace
     if (!drawn || !view.ready(now, wanted ? 0 : pace.interval)) return;
     const dt = this.before === 0 ? 0 : (now - this.before) / 1000;
     this.before = now;
@@ -93,7 +93,7 @@ export class Drawing {
     if (drawn) return;
     const { graphics } = this.view;
     setText(find("no-picture-why"), mode === "off" ? kOff : kNoGraphics[graphics]);
-    // what the browser takes away only the browser brings back
+    // only the browser can restore a context that it took away
     find("draw-anyway").hidden = mode !== "off" && graphics === "lost";
   }
 }

@@ -1,4 +1,4 @@
-/// The state of the page that may be read from outside, as window.prostm: by tests, and in the browser's console.
+/// The page's state that tests and the browser's console can read, as window.prostm.
 
 import type { State } from "./messages";
 import type { Frame } from "./wire";
@@ -6,10 +6,10 @@ import type { Frame } from "./wire";
 export interface Inspection {
   readonly frame: Frame | null;
   readonly state: State | null;
-  readonly frames: number; // read
-  readonly refused: number; // frames that were not read
-  readonly connections: number; // made
-  readonly pictures: number; // drawn
+  readonly frames: number; // decoded
+  readonly refused: number; // frames that could not be decoded
+  readonly connections: number; // connections made
+  readonly pictures: number; // pictures drawn
   readonly speed: { framesPerSecond: number; pixelRatio: number };
   readonly dark: boolean;
 }

@@ -33,7 +33,7 @@ import "./styles/base.css";
 import "./styles/controls.css";
 import "./styles/stage.css";
 import "./styles/panels.css";
-import "./styles/layout.css"; // last: what depends on the page's width wins
+import "./styles/layout.css"; // last: rules that depend on the page's width take precedence
 import type { Frame } from "./wire";
 
 const address = new Address();
@@ -48,7 +48,7 @@ const rates = new RateWatch();
 const help = new Help();
 const pointer = new Pointer(view);
 
-// what somebody has to know, said where it can be seen, for a while
+// messages to the user, shown for a while where they are visible
 const notice = find("notice");
 let noticeTimer: number | undefined;
 function say(sentence: string): void {
@@ -94,7 +94,7 @@ new Capture({
   caption: () => caption(drawing.shown, connection.state, planes.scale.end, new Date()),
 }, say);
 
-let missed = ""; // why the run does not keep its rates
+let missed = ""; // why the run misses its rates
 function takeFrame(frame: Frame): void {
   if (drawing.still) return;
   const now = performance.now() / 1000;
@@ -121,7 +121,7 @@ function takeState(state: State): void {
   transport.show(state, page);
   guide.show(state);
   pageHand.show(state.transport, page);
-  // the address follows the program, once it is known what an address that was opened asked for
+  // the address follows the program once the settings of the opened address are dealt with
   if (share.show(state)) address.set({ settings: changedSettings(state.controls) });
 }
 
@@ -140,7 +140,7 @@ function takeLink(link: Link, sentence: string): void {
   pageHand.lost();
 }
 
-/// Draws what is new beside the picture.
+/// Draws new data next to the picture.
 function panels(frame: Frame, now: number): void {
   planes.draw(frame, now);
   view.maps.setMax(planes.scale.end);
@@ -167,7 +167,7 @@ reducedMotion.addEventListener("change", () => (view.eye.smooth = !reducedMotion
 find("lock-scale").addEventListener("click", () => drawing.again());
 find("draw-anyway").addEventListener("click", () => picture.setMode("on"));
 
-// for pictures of the page: #still holds it as it is, and draws every pixel of that
+// for screenshots: #still holds the page and draws every pixel
 function holdStill(): void {
   const still = new URLSearchParams(location.hash.slice(1)).has("still");
   if (still === drawing.still) return;

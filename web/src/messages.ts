@@ -1,11 +1,11 @@
-/// The text messages of docs/reference/wire.md, as types, and the check of those that come from the program.
+/// The text messages of docs/reference/wire.md as types, and the validation of those that arrive.
 
 import { isStudy, type PageReport, type Study, type StudyAct } from "./study/messages";
 
 export interface Hello {
   type: "hello";
   version: number;
-  page: number; // which one this is, for hand_page
+  page: number; // the number of this page, for hand_page
   prostm: string;
   device: string;
   numbers: string[];
@@ -24,7 +24,7 @@ interface ControlBase {
 export interface ChoiceControl extends ControlBase {
   kind: "choice";
   value: string;
-  default: string; // as the run began
+  default: string; // at the run's start
   choices: { value: string; label: string }[];
 }
 export interface NumberControl extends ControlBase {
@@ -48,15 +48,15 @@ export interface Transport {
   recording: null | { length_s: number; seekable: boolean };
   source: string;
   base: string;
-  hand_page: number | null; // the page that holds the page's hand
+  hand_page: number | null; // the page whose hand is used
   page_hand: "free" | "held" | "late" | "hidden";
 }
-/// Advice of the program where the rates are missed; its effect on rates and stimulus is known there.
+/// The program's advice where the rates are missed; it knows the effect on rates and stimulus.
 export interface Advice {
   sentence: string;
-  set: null | { id: string; value: Value; label: string }; // a control
+  set: null | { id: string; value: Value; label: string }; // a control, its new value, and the button's label
 }
-/// The rates that the settings ask for.
+/// The rates set for the run.
 export interface Rates {
   world_hz: number;
   plan_hz: number;
@@ -91,13 +91,13 @@ export interface State {
   controls: Control[];
   transport: Transport;
   rates: Rates;
-  settings: string; // those that differ from their defaults, as TOML
+  settings: string; // settings that differ from their defaults, as TOML
   tracker: Tracker | null;
   calibration: Calibration | null;
 }
 export interface ErrorMessage {
   type: "error";
-  id?: string; // of the control that could not be set
+  id?: string; // the control that could not be set
   sentence: string;
 }
 export type ServerMessage = Hello | State | Study | ErrorMessage;
@@ -160,7 +160,7 @@ function isCalibration(x: unknown): boolean {
   return x.marks.every((m) => isObject(m) && isText(m.name) && isPoint(m.p_mm));
 }
 
-/// @return the message, or null when it is not one that this page knows.
+/// @return the message, or null if it is unknown or malformed.
 export function parseMessage(text: string): ServerMessage | null {
   let message: unknown;
   try {

@@ -1,23 +1,23 @@
-/// The place of the page that somebody points at: with a mouse that no button holds, or with a tap.
+/// The position on the page that the user points at: with a mouse without buttons pressed, or with a tap.
 
 export interface Place {
-  x: number; // of the window [pixels]
+  x: number; // in the window [pixels]
   y: number;
-  tapped: boolean; // the finger is gone, and the place stays until the next touch or click
+  tapped: boolean; // the finger has lifted; the position stays until the next touch or click
 }
 
-const kStill = 10; // pixels that a finger may move and still tap
+const kStill = 10; // pixels that a finger may move in a tap
 
-/// Calls `at` with each place of the element that somebody points at, and with null when nobody points there any more.
+/// Calls `at` with each position in the element that the user points at, and with null when the pointing ends.
 export function onPoint(element: EventTarget, at: (place: Place | null) => void): void {
-  let touch: { id: number; x: number; y: number } | null = null; // the only finger, while it has not moved
-  let tapped = false; // a tapped place stands
+  let touch: { id: number; x: number; y: number } | null = null; // the only finger, while it is still
+  let tapped = false; // a tapped position is in force
   const listen = (name: string, to: (event: PointerEvent) => void) => {
     element.addEventListener(name, (event) => to(event as PointerEvent));
   };
   const byFinger = (event: PointerEvent) => event.pointerType === "touch";
 
-  // before the part's own listeners, and whatever is pressed
+  // before the element's own listeners, wherever the press is
   document.addEventListener("pointerdown", () => {
     if (tapped) at(null);
     tapped = false;
@@ -31,7 +31,7 @@ export function onPoint(element: EventTarget, at: (place: Place | null) => void)
       if (touch !== null && Math.hypot(x - touch.x, y - touch.y) > kStill) touch = null;
     } else {
       tapped = false;
-      at(buttons === 0 ? { x, y, tapped } : null); // who drags does not read
+      at(buttons === 0 ? { x, y, tapped } : null); // no reading during a drag
     }
   });
   listen("pointerup", ({ pointerId, clientX: x, clientY: y }) => {

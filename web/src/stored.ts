@@ -1,10 +1,10 @@
-/// The values that this browser keeps from one visit to the next.
+/// Values that the browser stores between visits.
 
 export function remembered(key: string): string | null {
   try {
     return localStorage.getItem(`prostm-${key}`);
   } catch {
-    return null; // storage may be forbidden; then nothing is kept
+    return null; // storage may be forbidden; then nothing is stored
   }
 }
 

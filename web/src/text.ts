@@ -10,7 +10,7 @@ export function millimetres(metres: number): string {
   return `${mm < 0 ? "−" : ""}${Math.abs(mm)}`;
 }
 
-/// With as many digits as say something.
+/// With as many digits as are significant.
 export function short(value: number): string {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);

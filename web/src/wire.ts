@@ -1,10 +1,10 @@
-/// The decoder of the binary frames, docs/reference/wire.md. It trusts nothing: every length is checked before it is
-/// read.
+/// The decoder of the binary frames, docs/reference/wire.md. It trusts no input: every length is checked before it is
+/// used.
 
 export const kVersion = 2;
 export const kJoints = 26;
 
-/// The order of section 2, which only ever grows at its end.
+/// The order of section 2. New entries are only appended.
 export const kNumbers = [
   "track_ms", "hand_ms", "world_ms", "contact_ms", "plan_ms", "lift_ms", "step_ms",
   "world_hz", "plan_hz",
@@ -28,8 +28,8 @@ export interface Run {
   handInSight: boolean;
   fading: boolean;
   muted: boolean; // by a page or in the terminal
-  calibrating: boolean; // which mutes it too
-  hot: boolean; // the device, which mutes it too
+  calibrating: boolean; // in a calibration, which also mutes it
+  hot: boolean; // the device is too hot, which also mutes it
 }
 
 export interface Hand {
@@ -42,20 +42,20 @@ export interface Hand {
 
 export interface Smoke {
   n: number;
-  corner: [number, number, number]; // in D [m]
-  edge: number; // of the box [m]
+  corner: [number, number, number]; // smallest coordinates, in D [m]
+  edge: number; // edge of the box [m]
   density: Uint8Array; // n³, x fastest
 }
 
-/// A target plane P with what is to be felt in it and what is.
+/// A target plane P with the target and the rendered field.
 export interface Patch {
   rows: number;
   cols: number;
   cell: number; // [m]
-  centre: [number, number]; // of cell (0, 0) in P [m]
+  centre: [number, number]; // centre of cell (0, 0) in P [m]
   pose: Float32Array; // X_DP, rows of its upper 3 × 4 matrix
-  scale: number; // the pressure of 65535 [Pa]
-  heightScale: number; // the height of 1 [m]
+  scale: number; // pressure of 65535 [Pa]
+  heightScale: number; // height of 1 [m]
   target: Uint16Array;
   rendered: Uint16Array;
   height: Int16Array;
@@ -68,17 +68,17 @@ export interface Path {
   length: number; // in the plane [m]
   speed: number; // [m/s]
   period: number; // [s]
-  loop: number; // in which all paths come round together [s]; 0: each on its own
-  phase: number; // delay of a focus' modulation, as a share of its period
+  loop: number; // common period of all paths [s]; 0: each has its own
+  phase: number; // delay of a focus' modulation, as a fraction of its period
   count: number;
   /// count × 6: x, y in P [m], rendered pressure [Pa], position on the skin in D [m]
   points: Float32Array;
 }
 
-/// The result of a study's gate for the shown target.
+/// The verdict of a study's gate on the target shown.
 export interface Gate {
   passed: boolean;
-  share: number; // of the last second's frames that have no problem
+  share: number; // fraction of the last second's frames without a problem
   maxima: number;
   balance: number;
   saddle: number;
@@ -94,30 +94,30 @@ export interface Frame {
   run: Run;
   numbers: Float32Array;
   hands: Hand[];
-  /// the newest smoke and field, and the frames that brought them
+  /// the newest smoke and field, and the sequence numbers of the frames that brought them
   smoke: Smoke | null;
   smokeSequence: number;
   field: Patch[];
   fieldSequence: number;
   plan: Path[];
-  gate: Gate | null; // null where nothing is asked of the target
+  gate: Gate | null; // null if the run has no gate
 }
 
 export function numberOf(frame: Frame, name: NumberName): number {
   return frame.numbers[kNumbers.indexOf(name)] ?? NaN;
 }
 
-/// Why a message was not read, as a sentence for whoever looks at the page.
+/// Why a message could not be decoded, as a sentence for the user.
 export class WireError extends Error {}
 
 const kLargestMessage = 16 << 20;
-const kLargestSide = 1024; // cells along a side of a patch
+const kLargestSide = 1024; // cells along a side of a patch, at most
 
 function require(holds: boolean, sentence: string): asserts holds {
   if (!holds) throw new WireError(sentence);
 }
 
-/// A part of a message that hands out what it holds from front to back, and never more than that.
+/// A part of a message that is read from front to back, never beyond its end.
 class Reader {
   private readonly view: DataView;
   private at: number;
@@ -136,7 +136,7 @@ class Reader {
   u32(): number { return this.view.getUint32(this.take(4), true); }
   f32(): number { return this.view.getFloat32(this.take(4), true); }
   f64(): number { return this.view.getFloat64(this.take(8), true); }
-  /// A finite number, where anything else would spoil a drawing.
+  /// Reads a finite number; others would spoil a drawing.
   finite(): number {
     const value = this.f32();
     require(Number.isFinite(value), `the ${this.what} of the frame holds a number that is not finite`);
@@ -194,7 +194,7 @@ function readSmoke(reader: Reader): Smoke {
   require(n >= 1 && n <= 256, `the smoke of the frame claims ${n} cells along an edge`);
   const corner: Smoke["corner"] = [reader.finite(), reader.finite(), reader.finite()];
   const edge = reader.finite();
-  require(edge > 0, "the smoke of the frame is in a box without size");
+  require(edge > 0, "the smoke of the frame has a box without size");
   reader.u32();
   return { n, corner, edge, density: new Uint8Array(reader.bytes(n * n * n)) };
 }
@@ -248,22 +248,22 @@ function readEach<T>(count: number, read: () => T): T[] {
   return all;
 }
 
-/// Reads the messages of one connection, in their order: the large sections come only when they are new.
+/// Decodes the messages of one connection, in order: the large sections are sent only when they change.
 export class Decoder {
   private smoke: Smoke | null = null;
   private smokeSequence = -1;
   private field: Patch[] = [];
   private fieldSequence = -1;
 
-  /// Throws a WireError, and keeps what it held, when the message is not one whole frame of this version.
+  /// Throws a WireError, and keeps the present state, if the message is not one whole frame of this version.
   decode(message: ArrayBuffer): Frame {
     require(message.byteLength >= 16, "a frame is shorter than its header");
-    require(message.byteLength <= kLargestMessage, "a frame is longer than any frame is");
+    require(message.byteLength <= kLargestMessage, "a frame is longer than allowed");
     const view = new DataView(message);
-    require(view.getUint32(0, true) === 0x4d545350, "a message does not begin like a frame");
+    require(view.getUint32(0, true) === 0x4d545350, "a message is not a frame");
     const version = view.getUint16(4, true);
     require(version === kVersion, `the program speaks version ${version} of the wire and this page version ${kVersion}; reload the page`);
-    require(view.getUint32(12, true) === message.byteLength, "a frame is not as long as it says");
+    require(view.getUint32(12, true) === message.byteLength, "a frame is not as long as its header states");
 
     const sequence = view.getUint32(8, true);
     let run: Run | null = null;
@@ -276,7 +276,7 @@ export class Decoder {
 
     let at = 16;
     for (let section = view.getUint16(6, true); section > 0; --section) {
-      require(at + 8 <= message.byteLength, "a frame holds fewer sections than it says");
+      require(at + 8 <= message.byteLength, "a frame holds fewer sections than its header states");
       const id = view.getUint16(at, true);
       const count = view.getUint16(at + 2, true);
       const end = at + 8 + view.getUint32(at + 4, true);
@@ -302,9 +302,9 @@ export class Decoder {
       }
       at = end + ((8 - (end % 8)) % 8);
     }
-    require(run !== null, "a frame does not say where the run is");
+    require(run !== null, "a frame has no section about the run");
 
-    // only a whole frame changes what is kept
+    // only a whole frame changes the state
     if (smoke !== null) [this.smoke, this.smokeSequence] = [smoke, sequence];
     if (field !== null) [this.field, this.fieldSequence] = [field, sequence];
     return {

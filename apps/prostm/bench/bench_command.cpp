@@ -38,7 +38,7 @@ void print_paper(std::FILE* out, const std::string& scene) {
   }
 }
 
-/// The row of the paper's Table I that AM would have, as updates a second.
+/// Prints AM's row for the paper's Table I, as updates a second.
 void print_am(std::FILE* out, const PlannerColumn& am) {
   const Summary t = am.stage[kStages - 1].summary();
   if (t.n == 0) return;
@@ -46,7 +46,7 @@ void print_am(std::FILE* out, const PlannerColumn& am) {
              "  am: {:.0f} updates a second at the median time, {:.0f} at the 99th percentile; the "
              "paper, on its own machine: about {:.0f}\n"
              "    mean RMSE {:.3f}, correlation {:.3f}, coverage {:.3f}, not to be compared with "
-             "those of paths: how the fields are felt differs (docs/guides/am.md)\n",
+             "those of paths, since the fields are felt differently (docs/guides/am.md)\n",
              1.0 / t.p50, 1.0 / t.p99, kPaperAmRate, am.rmse.summary().mean,
              am.correlation.summary().mean, am.coverage.summary().mean);
 }
@@ -76,7 +76,7 @@ nlohmann::ordered_json stage_row(const std::string& file, const std::string& sce
           {"ratio", a.p50 > 0.0 ? reference.p50 / a.p50 : std::nan("")}};
 }
 
-/// The planners of one recording: the textbook's, ours and AM; with --method am the last alone.
+/// The planners of one recording: the textbook's, ours and AM; with --method am only the last.
 std::vector<PlannerColumn> columns_of(const PipelineSettings& settings) {
   using Kind = PlannerColumn::Kind;
   std::vector<PlannerColumn> columns;
@@ -101,7 +101,7 @@ void append_rows(nlohmann::ordered_json& rows, const std::string& file, const st
                            {"the paper's AM", 1.0 / kPaperAmRate, 1.0 / kPaperAmRate}));
 }
 
-/// Every field of a recording, on this one thread. False when interrupted.
+/// Measures every field of a recording, on this one thread; false when interrupted.
 bool measure(const RecordingReader& recording, FieldBench& bench, const Interrupt& interrupt,
              Progress& progress) {
   for (int f = 0; f < recording.frames(); ++f) {

@@ -45,8 +45,8 @@ struct PlannerColumn {
   Summary total() const { return stage[kPlanStages - 1].summary(); }
 };
 
-/// Times and scores planners on fields, in turn on this one thread: the median of the repeats
-/// counts. A field that one of them finds nothing on is left out for all.
+/// Times and scores planners on fields, in turn on this one thread, and takes the median of the
+/// repeats. A field for which one of them finds no plan is left out for all.
 class FieldBench {
  public:
   FieldBench(const PipelineSettings& settings, std::vector<PlannerColumn> columns, int repeats);

@@ -16,22 +16,22 @@
 namespace prostm::app {
 namespace {
 
-constexpr int kNotFound = 1;  // exit status: something that was named
+constexpr int kNotFound = 1;  // exit status: a named item was not found
 constexpr std::size_t kWidth = 100, kTextColumn = 33;
 
 struct Row {
   std::string role, kind;
   bool available = false;
   std::string detail;
-  std::optional<bool> found = {};  ///< nothing where nothing was looked for
-  std::string words = {};          ///< result of the look
+  std::optional<bool> found = {};  ///< nothing if it was not probed
+  std::string words = {};          ///< result of probing
   std::string array = {};          ///< the transducers that a device implies
 };
 
-/// A row that is there at the end of a look.
+/// A row that is ready when probing ends.
 using Looking = std::future<Row>;
 
-/// Adds the finding of a look, or why there was none.
+/// Adds the result of probing, or the reason why it failed.
 template <class Look>
 Row looked(Row row, const Look& look) {
   try {
@@ -52,7 +52,7 @@ DeviceSetup setup_of(const DeviceKind& kind, const std::string& address) {
   return setup;
 }
 
-/// A kind of device, without a look.
+/// A kind of device, not probed.
 Row row_of(const DeviceKind& kind, const DeviceSetup& setup) {
   if (!kind.is_built()) {
     const char* missing = kind.look == nullptr ? "not built yet in this version; " : "";
@@ -102,7 +102,7 @@ Looking known(Row row) {
   return promise.get_future();
 }
 
-/// The look at all that could be there, on this machine alone.
+/// Probes everything that this machine may have.
 std::vector<Looking> look_around() {
   std::vector<Looking> looks;
   for (const DeviceKind& kind : device_kinds()) looks.push_back(look_for(kind, ""));
@@ -129,7 +129,7 @@ std::vector<Looking> look_around() {
 
 std::vector<Looking> look_at(const std::vector<std::string>& names) {
   std::vector<Looking> looks;
-  // all names are checked before the first look
+  // all names are checked before anything is probed
   for (const std::string& name : names) {
     if (name.starts_with("leap:")) {
       leap_address(name);

@@ -7,14 +7,14 @@ namespace prostm::app {
 namespace {
 
 void add_devices(CLI::App& app, Work& work) {
-  auto* command =
-      app.add_subcommand("devices", "what can be driven from here, what is found, what is missing");
+  auto* command = app.add_subcommand(
+      "devices", "list devices and sources of hands: found, missing or not built");
   auto o = std::make_shared<DevicesOptionsGiven>();
   add_name(*command, "names", o->names,
-           "look at these alone, also on other machines: a device with its address, "
+           "check only these, also on other machines: a device with its address, "
            "leap://HOST:PORT, or openxr; default: all that this machine has");
   add_json(*command, o->files, o->json);
-  command->add_flag("--budget", o->budget, "what a link to AUTD3 carries: a table, nothing else");
+  command->add_flag("--budget", o->budget, "print only a table of what a link to AUTD3 can carry");
   command->footer("Example:\n  prostm devices");
   command->callback([o, &work] { work = {&o->files, [o] { return devices_command(*o); }}; });
 }
@@ -22,11 +22,11 @@ void add_devices(CLI::App& app, Work& work) {
 void add_levels(CLI::App& app, Work& work) {
   auto* command = app.add_subcommand(
       "levels",
-      "how loud an array can be, at focal points and at the head, beside caps and limits");
+      "levels of an array at focal points and at the head, with caps and published limits");
   auto o = std::make_shared<LevelsOptionsGiven>();
   add_array(*command, o->common);
   add_input(*command, o->common.files, "--settings", o->common.settings_file,
-            "settings, of which [safety] has the caps (docs/devices/safety.md)");
+            "settings; the caps are in [safety] (docs/devices/safety.md)");
   add_json(*command, o->common.files, o->common.json);
   command->footer("Example:\n  prostm levels --array autd3");
   command->callback([o, &work] { work = {&o->common.files, [o] { return levels_command(*o); }}; });
@@ -34,7 +34,7 @@ void add_levels(CLI::App& app, Work& work) {
 
 void add_selftest(CLI::App& app, Work& work) {
   auto* command = app.add_subcommand(
-      "selftest", "what is connected, and whether a hand can feel it: asks before it plays");
+      "selftest", "test a connected device with figures for a hand to feel; asks before it plays");
   auto o = std::make_shared<SelftestOptionsGiven>();
   add_input(*command, o->common.files, "--settings", o->common.settings_file,
             "settings of any stage, a TOML file (docs/reference/files.md)");
@@ -43,8 +43,10 @@ void add_selftest(CLI::App& app, Work& work) {
   add_array(*command, o->common,
             array_choices() + "; default: the device's, or " + array_kinds().front().name);
   add_figure(*command, o->common, "a picture of the array, seen from above (.png, .svg or .pdf)");
-  command->add_option("--seconds", o->seconds, "of each figure, 0.2 to 60")->capture_default_str();
-  command->add_option("--height-mm", o->height_mm, "of the figures over the array, 50 to 500")
+  command->add_option("--seconds", o->seconds, "duration of each figure, 0.2 to 60")
+      ->capture_default_str();
+  command
+      ->add_option("--height-mm", o->height_mm, "height of the figures above the array, 50 to 500")
       ->capture_default_str();
   command->add_option("--level", o->level, "largest intensity, 0.05 to 1")->capture_default_str();
   auto* yes = command->add_flag("--yes", o->yes, "play without being asked");

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kLinks = 3;  // frames per ms in the table, the fastest index
 
-/// Share of a link, or "-" where blocks are not written in time.
+/// Returns the share of a link, or "-" if blocks are not written in time.
 std::string load_of(const Autd3Budget& row) {
   return row.urgency <= 1.0 ? fmt::format("{:.0f}", 1e2 * row.load) : "-";
 }
@@ -49,8 +49,8 @@ int frame_budget(const DevicesOptionsGiven& options) {
       out,
       "AUTD3 v38, a stream in blocks. A focal point with an intensity of its own takes two "
       "slots, one of several with the same intensity takes one.\nThe step is that of a focal "
-      "point at {:g} m/s. The last columns are the share of a link that takes so many frames "
-      "per ms [%],\nwith the frame that keeps a block audible; - is too much.\n\n",
+      "point at {:g} m/s. The last columns are the used share [%] of a link with so many frames "
+      "per ms,\nincluding the frame that keeps a block audible; - is too much.\n\n",
       kAutd3DrawSpeed);
   const std::vector<Autd3Budget> rows = autd3_budgets();
   fmt::print(out, "{:>5} {:>8} {:>6} {:>6} {:>6} {:>8} {:>7}", "slots", "divider", "kHz", "mm",

@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<double, 5> kHeights = {0.10, 0.15, 0.20, 0.25, 0.30};  // [m]
 constexpr double kReference = 20e-6;                                        // of 0 dB, rms [Pa]
 
-/// The pressures of a full drive on one point over the middle of the array.
+/// The pressures at one focal point above the array's centre, at full drive.
 struct FocusRow {
   double height = 0.0;                               ///< [m]
   double low = 0.0, high = 0.0;                      ///< acoustic, rms [Pa]
@@ -23,7 +23,7 @@ double decibels(double pressure) {
   return 20.0 * std::log10(pressure / kReference);
 }
 
-/// The row of a height over the middle of the array, which need not be D's origin.
+/// Returns the row of a height above the array's centre, which need not be D's origin.
 FocusRow focus_row(const TransducerArray& array, double height) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : array.position) middle += p / static_cast<double>(array.position.size());

@@ -20,13 +20,13 @@ namespace {
 
 constexpr int kFailed = 1;           // exit status
 constexpr double kLook = 0.01;       // [s]
-constexpr double kLongestEnd = 1.0;  // until the last sample is played [s]
+constexpr double kLongestEnd = 1.0;  // longest wait until the last sample is played [s]
 
 /// The answers to a figure.
 struct Outcome {
   std::string name;
   bool played = false;
-  std::optional<bool> felt;  ///< nothing where nobody was asked, or answered
+  std::optional<bool> felt;  ///< nothing if it was not asked or not answered
 };
 
 void check(const SelftestOptionsGiven& given, std::FILE* out) {
@@ -100,7 +100,7 @@ void print_device(std::FILE* out, const Tested& tested, const DeviceInfo& info,
              info.intensity_per_focus ? "an intensity for each focal point"
                                       : "one intensity for all focal points",
              device_named(settings.device).kind->tried);
-  if (!description.empty()) fmt::print(out, "it says: {}\n", description);
+  if (!description.empty()) fmt::print(out, "it reports: {}\n", description);
   const std::vector<ArrayUnit> units = units_of(settings.transducers);
   fmt::print(out, "array: {}, {} transducers in {} unit{}; {} figures to play\n",
              settings.transducers.name, settings.transducers.position.size(), units.size(),
@@ -131,7 +131,7 @@ void draw(const SelftestOptionsGiven& given, const PipelineSettings& settings) {
   draw_array(figure, path);
 }
 
-/// Plays the figures, each after a question unless none is wanted.
+/// Plays the figures, each after a question unless questions are switched off.
 class Session {
  public:
   Session(const SelftestOptionsGiven& given, Tested& tested, std::FILE* out,
@@ -176,7 +176,7 @@ class Session {
     return answer && (answer->empty() || answer->starts_with("y"));
   }
 
-  /// Returns whether it was played, whole or until somebody silenced it.
+  /// Returns whether it was played, to the end or until it was silenced.
   bool play_figure(std::size_t i) {
     tested_.pattern().play(i);
     while (goes_on() && !tested_.pattern().done()) {
@@ -229,10 +229,10 @@ Judgement judge(const Tested& tested, Device& device, const std::vector<Outcome>
                         played, tested.figures().size(), with(true), with(false),
                         played - with(true) - with(false));
   if (stats.missed_blocks > 0) {
-    sentence += fmt::format(" {} of {} blocks were missed: the device fell silent in between.",
+    sentence += fmt::format(" {} of {} blocks were missed: the output had gaps.",
                             stats.missed_blocks, stats.blocks);
   }
-  if (device.is_hot()) sentence += " The hardware says that it is too hot: let it cool down.";
+  if (device.is_hot()) sentence += " The hardware reports that it is too hot: let it cool down.";
   return {with(false) == 0 && !device.is_hot(), sentence};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Questions on a terminal that wait for an answer or for a signal, whichever comes first.
+/// Questions on a terminal, which wait for an answer or a signal, whichever comes first.
 
 #include <cstdio>
 #include <optional>
@@ -12,7 +12,7 @@ namespace prostm::app {
 /// Standard input, line by line.
 class Terminal {
  public:
-  /// @param out where questions go.
+  /// @param out stream for the questions.
   Terminal(std::FILE* out, const Interrupt& interrupt) : out_(out), interrupt_(interrupt) {}
 
   /// Whether there is a person to ask.

@@ -11,7 +11,7 @@
 namespace prostm::app {
 namespace {
 
-/// @throws InputError for a hand that needs a clock.
+/// @throws InputError for a hand that needs real time.
 void check_hand(const CaptureOptionsGiven& given) {
   if (given.hand != "page" && !names_tracker(given.hand)) return;
   throw InputError(fmt::format(
@@ -47,7 +47,7 @@ int capture_command(const CaptureOptionsGiven& given) {
   progress.clear();
   recorder.close();
   std::FILE* out = prose(given.common.json);
-  fmt::print(out, "{} fields of {} had pressure\n", taken, settings.scene);
+  fmt::print(out, "recorded {} fields with pressure from {}\n", taken, settings.scene);
   say_written(out, given.out);
   write_json(given.common.json,
              {{"file", given.out}, {"scene", settings.scene}, {"frames", taken}});

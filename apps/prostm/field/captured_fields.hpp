@@ -8,13 +8,13 @@
 
 namespace prostm::app {
 
-/// The run time after which capture_fields() gives up [s]: a hand is away for part of its time, and
-/// one that never meets the smoke must not capture without end.
+/// Returns the run time after which capture_fields() gives up [s]: a hand is away part of the time,
+/// and one that never meets the smoke must not run without end.
 double capture_limit(const PipelineSettings& settings, int frames);
 
-/// Records updates that have pressure until there are so many, or go_on, which is told how many
-/// there are, says false. @param from run time of the first [s]. @return how many there are.
-/// @throws what the pipeline or recorder throws.
+/// Records `frames` updates with pressure, or fewer if go_on, which gets the number so far, returns
+/// false. @param from earliest run time of the first [s]. @return the number recorded.
+/// @throws as the pipeline and the recorder do.
 int capture_fields(Pipeline& pipeline, const PipelineSettings& settings, Recorder& recorder,
                    int frames, const std::function<bool(int taken)>& go_on, double from = 0.0);
 

@@ -21,11 +21,11 @@
 namespace prostm::app {
 namespace {
 
-/// The plan, and the raster that its field is computed on: the target's where one is given.
+/// The plan, and the raster for its field: the target's if a target is given.
 struct Input {
   Plan plan;
   TargetField raster;
-  double full_scale_pressure = 0.0;  // that the plan is played with; 0 if it does not tell
+  double full_scale_pressure = 0.0;  // full scale stated by the plan; 0 without one
   bool has_target = false;
 };
 
@@ -75,17 +75,18 @@ void print_levels(std::FILE* out, const PhysicalReport& r) {
   const double low = std::pow(array.amplitude_low / array.amplitude, 2),
                high = std::pow(array.amplitude_high / array.amplitude, 2);
   fmt::print(
-      out, "  radiation pressure on the skin: up to {:.3g} Pa at some time, {:.3g} Pa in the mean",
+      out, "  radiation pressure on the skin: peak {:.3g} Pa, largest mean over the loop {:.3g} Pa",
       r.field->largest, r.field->largest_mean);
   if (high > low) {
     fmt::print(out, " (sources differ on the array: {:.2f} to {:.2f} times that)", low, high);
   }
-  fmt::print(out, "\n  worst side lobe, more than {:.0f} mm beside the paths: {:.1f} % of it\n",
+  fmt::print(out,
+             "\n  largest side lobe, more than {:.0f} mm from the paths: {:.1f} % of the peak\n",
              1e3 * kBesidePaths, 100.0 * r.field->side_lobe);
   fmt::print(
       out,
-      "  focal points: {:.1f} mm off in the mean, {:.1f} mm at worst; {:.2f} of the acoustic "
-      "pressure asked for, {:.2f} to {:.2f}\n",
+      "  focal points: position error {:.1f} mm mean, {:.1f} mm max; {:.2f} of the requested "
+      "acoustic pressure, {:.2f} to {:.2f}\n",
       1e3 * r.focus.mean_offset, 1e3 * r.focus.worst_offset, r.focus.mean_level,
       r.focus.least_level, r.focus.most_level);
 }
@@ -99,7 +100,7 @@ void print_power(std::FILE* out, const PhysicalReport& r) {
              d.full_scale_pa, d.largest_drive, d.mean_power, transducers, 100.0 * d.full_share,
              d.short_samples, r.loop->samples);
   if (d.merged > 0) {
-    fmt::print(out, "  {} times two focal points were at one place: the stronger one was played\n",
+    fmt::print(out, "  two focal points coincided {} times: the stronger one was played\n",
                d.merged);
   }
 }
@@ -107,16 +108,16 @@ void print_power(std::FILE* out, const PhysicalReport& r) {
 void print_felt(std::FILE* out, const PhysicalReport& r) {
   if (r.felt == nullptr) {
     fmt::print(out,
-               "  what is felt is not computed for loops of more than 250 ms, or rasters of more "
-               "than 128 cells along an edge or cells of more than 20 mm\n");
+               "  the percept is not computed for loops of more than 250 ms, rasters of more than "
+               "128 cells along an edge, or cells of more than 20 mm\n");
     return;
   }
-  fmt::print(
-      out,
-      "  felt: as {:.2f} µm rms at 250 Hz at the strongest place, {:.2f} µm over the whole skin",
-      1e6 * r.felt->largest, 1e6 * r.felt->intensity);
+  fmt::print(out,
+             "  felt like a vibration at 250 Hz of {:.2f} µm rms at the peak, {:.2f} µm over the "
+             "whole skin",
+             1e6 * r.felt->largest, 1e6 * r.felt->intensity);
   if (r.ghosts != nullptr) {
-    fmt::print(out, "; {} ghosts above half of that, the strongest {:.0f} % of it", r.ghosts->count,
+    fmt::print(out, "; {} ghosts above half of the peak, the strongest {:.0f} %", r.ghosts->count,
                100.0 * r.ghosts->largest);
   }
   fmt::print(out, "\n");
@@ -150,8 +151,8 @@ void print_scores(std::FILE* out, const PhysicalReport& r) {
              "  (skin feels movement, not the mean: by the mean a flat field can beat any path)\n");
 }
 
-/// How wide and strong one focus is at 100 to 300 mm, up to 90 mm beside the axis, tilted by up to
-/// 60°.
+/// Prints width and strength of one focus at heights of 100 to 300 mm, up to 90 mm off the axis,
+/// tilted by up to 60°.
 void tell_widths(const TransducerArray& array, const FieldOptionsGiven& given) {
   constexpr std::array kHeights{0.10, 0.15, 0.20, 0.25, 0.30};  // [m]
   constexpr std::array kOffsets{0.0, 0.03, 0.06, 0.09};         // [m]
@@ -188,21 +189,21 @@ LoopDriveResult solve(const TransducerArray& array, const Medium& air, const Loo
   settings.transducer.memoryless = given.memoryless;
   const auto go_on = [&](int done, int of) {
     progress.show(done, of, "samples");
-    return true;  // nothing is written before the end, so a signal may end it anywhere
+    return true;  // nothing is written before the end, so a signal may end it at any time
   };
   LoopDriveResult drives;
   loop_drives(array, air, loop, settings, go_on, drives);
   return drives;
 }
 
-/// The results that a report points to.
+/// The results that a report refers to.
 struct Judgement {
   FeltField felt;
   Metrics envelope, mean, of_felt;
   Ghosts ghosts;
 };
 
-/// Compares the field, and what is felt of it where `report` has that, with the target.
+/// Compares the field with the target, and its percept too if `report` has it.
 void judge(const Input& input, const PlanSettings& settings, PhysicalReport& report,
            Judgement& out) {
   const TargetField& target = input.raster;
@@ -237,7 +238,7 @@ void tell(const PhysicalReport& report, const Input& input, const FieldOptionsGi
   say_written(out, given.common.json);
 }
 
-/// The emission that the plan was made for, unless the settings have a full scale of their own.
+/// Returns the emission that the plan was made for, unless the settings give a full scale.
 EmitSettings emission_of(const PipelineSettings& settings, const Input& input) {
   EmitSettings emit = settings.emit;
   if (emit.full_scale_pressure == 0.0) emit.full_scale_pressure = input.full_scale_pressure;
@@ -253,7 +254,7 @@ int field_command(const FieldOptionsGiven& given) {
   if (given.widths != given.plan.empty())
     throw InputError("prostm field needs a plan, or --widths without one");
   if (given.widths && given.felt_spectrum)
-    throw InputError("--felt-spectrum needs a plan: the widths of a focus are not felt");
+    throw InputError("--felt-spectrum needs a plan; --widths has no percept");
   if (given.widths) {
     tell_widths(array, given);
     return 0;

@@ -8,25 +8,27 @@ namespace prostm::app {
 namespace {
 
 void add_field(CLI::App& app, Work& work) {
-  auto* command = app.add_subcommand("field", "what an array puts on the skin by a plan");
+  auto* command =
+      app.add_subcommand("field", "simulate a plan on an array: pressure on the skin and percept");
   auto o = std::make_shared<FieldOptionsGiven>();
   add_input(*command, o->common.files, "plan", o->plan, "a plan of prostm plan --json");
   command->add_flag("--widths", o->widths,
-                    "instead: how wide a focus of the array is, by height, offset and tilt");
+                    "instead: print the width of the array's focus by height, offset and tilt");
   auto* target =
       add_input(*command, o->common.files, "--field", o->target,
-                "the field that was planned, to compare with (.json, .npy, .png or .h5)");
+                "the field that the plan was made for, to compare with (.json, .npy, .png or .h5)");
   add_field_file(*command, o->file, target);
   add_array(*command, o->common);
   add_name(*command, "--solver", o->solver,
            "superposition, ibp, gs-pat, weighted, eigenvector or lm")
       ->capture_default_str();
   command->add_option("--full-scale-pa", o->full_scale_pa,
-                      "acoustic pressure of intensity 1, rms; 0: the most that the array can hold "
-                      "over the whole loop");
-  command->add_flag("--memoryless", o->memoryless, "transducers that follow their drives at once");
+                      "acoustic pressure at intensity 1, rms; 0: the highest that the array can "
+                      "sustain over the whole loop");
+  command->add_flag("--memoryless", o->memoryless,
+                    "ideal transducers that follow their drives at once");
   command->add_flag("--felt-spectrum", o->felt_spectrum,
-                    "also tell what is felt harmonic by harmonic of the loop");
+                    "also print the percept of each harmonic of the loop");
   add_input(*command, o->common.files, "--settings", o->common.settings_file,
             "settings of any stage, a TOML file (docs/reference/files.md)");
   add_figure(*command, o->common, "target, envelope, mean and difference (.png, .svg or .pdf)");

@@ -10,7 +10,7 @@
 namespace prostm::app {
 namespace {
 
-constexpr double kHandSpan = 0.250;   // of a large hand with spread fingers, either way [m]
+constexpr double kHandSpan = 0.250;   // length and width of a large hand, fingers spread [m]
 constexpr double kHandWidth = 200.0;  // a size that fits on a hand, for advice [mm]
 
 int skin_cells(const TargetField& field) {
@@ -46,8 +46,7 @@ Vec2 skin_size(const TargetField& field) {
   return field.cell * Vec2(std::max(right - left + 1, 0), std::max(high - low + 1, 0));
 }
 
-/// Share of the cells at the border of the raster that carry at least so much of the largest
-/// pressure.
+/// Returns the share of the raster's border cells with at least this share of the largest pressure.
 double border_share(const TargetField& field, double carries) {
   const double least = carries * max_pressure(field);
   int border = 0, pressed = 0;
@@ -68,7 +67,7 @@ bool presses_on_border(const TargetField& field) {
   return border_share(field, 0.25) > 0.5;
 }
 
-/// Whether nearly all of the border carries full pressure, as the paper of a drawing does. The
+/// Whether nearly all of the border has full pressure, like the white paper of a drawing. The
 /// border of a photo has shades.
 bool is_on_paper(const TargetField& field) {
   return border_share(field, 0.9) >= 0.9;
@@ -83,27 +82,27 @@ bool is_even(const TargetField& field) {
   return least >= max_pressure(field);
 }
 
-/// A sentence about a picture that was hardly meant as it is read; empty for any other.
+/// Returns a warning for a picture that was probably not meant as it is read; else empty.
 std::string picture_warning(const TargetField& field, bool invert) {
   const int skin = skin_cells(field);
-  if (skin == 0) return "the picture is transparent everywhere, and transparent is no skin";
+  if (skin == 0) return "the picture is transparent everywhere, and transparent means no skin";
   if (is_even(field) && static_cast<std::size_t>(skin) == field.size())
     return "the picture is the same everywhere, so it has no shape to plan";
   const char* remedy = invert ? "try without --invert" : "try --invert";
   if (max_pressure(field) == 0.0) {
     return fmt::format(
-        "the picture is {0} wherever it is not transparent, and {0} is no pressure; {1}, and fill "
-        "the transparent ground with {2} if it is to be skin too",
+        "the picture is {0} wherever it is not transparent, and {0} means no pressure; {1}, and "
+        "fill the transparent background with {2} if it should be skin too",
         invert ? "white" : "black", remedy, invert ? "black" : "white");
   }
   if (is_even(field)) {
-    return "the picture is the same wherever it is not transparent, so its shape lies in its "
-           "transparency alone, which is no skin; put it on a ground without pressure";
+    return "the picture is the same wherever it is not transparent, so its shape lies only in its "
+           "transparency, which means no skin; put it on a background without pressure";
   }
   if (!presses_on_border(field)) return {};
   if (!is_on_paper(field))
     return "most of the picture's border presses on the skin: brightness is pressure, so a photo "
-           "presses nearly everywhere; cut its ground out (black, or transparent for no skin)";
+           "presses nearly everywhere; remove its background (black, or transparent for no skin)";
   return fmt::format(
       "most of the picture's border presses on the skin, so it is probably drawn {}; {}",
       invert ? "white on black" : "black on white", remedy);
@@ -173,7 +172,7 @@ std::vector<std::string> control_warnings(const Metrics& played,
   return {fmt::format("the plan loses to the control \"{}\", skill {} against {}: {}", best->name,
                       text.value, text.bound,
                       by_felt ? "its pressure hardly resembles the field"
-                              : "what is felt will hardly resemble the field")};
+                              : "the percept will hardly resemble the field")};
 }
 
 }  // namespace prostm::app

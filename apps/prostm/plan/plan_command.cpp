@@ -108,7 +108,7 @@ TargetField another_target(const TargetField& target, std::uint64_t seed) {
   return other;
 }
 
-/// The six panels, and under them those of `--beside`.
+/// Draws the six panels, and those of `--beside` below them.
 void draw_figure(const PlanFigure& figure, const PlanOptionsGiven& given,
                  const PipelineSettings& settings) {
   if (given.beside.empty()) {
@@ -122,7 +122,7 @@ void draw_figure(const PlanFigure& figure, const PlanOptionsGiven& given,
   draw_plan(figure, given.common.figure, &beside);
 }
 
-/// Everything that is told of one plan.
+/// Everything that is reported about one plan.
 struct Result {
   PlanStatus status = PlanStatus::EmptyTarget;
   Plan plan;
@@ -139,7 +139,7 @@ struct Result {
 Result plan_paths(const TargetField& target, const PlanSettings& s, bool traced) {
   Planner planner(s, target.size());
   Result r;
-  // with a budget, a first plan tells how much work it pays for
+  // with a budget, a first plan measures how much work fits into it
   if (s.budget > 0.0) planner.plan(target, r.plan, r.stats);
   planner.reset();
   r.status = planner.plan(target, r.plan, r.stats);
@@ -163,8 +163,8 @@ Result plan_foci(const TargetField& target, const PipelineSettings& settings) {
   return r;
 }
 
-/// How good a plan is as it is played. @param widths of the focal point besides that of the
-/// settings [m].
+/// Returns the quality of a plan as it is played. @param widths further widths of the focal point,
+/// besides that of the settings [m].
 PlanQuality quality_of(const TargetField& target, const Plan& plan, const SegmentPressures& played,
                        const PipelineSettings& settings, const std::vector<double>& widths,
                        WorkerPool& pool) {
@@ -206,7 +206,7 @@ Result plan_field(const TargetField& target, const PipelineSettings& settings, b
   return r;
 }
 
-/// Fills in how good the plan is. @param widths as of quality_of().
+/// Fills in the quality of the plan. @param widths as of quality_of().
 void score(const TargetField& target, const PipelineSettings& settings,
            const std::vector<double>& widths, Progress& progress, Result& r) {
   const PlanSettings& s = settings.plan;
@@ -217,7 +217,7 @@ void score(const TargetField& target, const PipelineSettings& settings,
     r.weighted = weighted_rmse(target, r.plan, 0, settings.sigma(), s.gain_law(), &pressures);
   }
   if (r.status != PlanStatus::Planned) return;
-  progress.next("scoring what must lose to the plan");
+  progress.next("scoring the controls");
   r.controls = controls(
       target, settings.sigma(), s.gain_law(), s.max_length(), &r.other,
       static_cast<std::uint64_t>(s.seed),
@@ -238,12 +238,12 @@ void print_power(std::FILE* out, const Plan& plan, double limit) {
   const int foci = focal_points(plan);
   fmt::print(
       out,
-      "  power: {} focal point{} at once, each with {:.1f} % of the array's power; while all "
-      "ask for the same pressure, the power limit of {:g} allows each {:.1f} % of full scale\n",
+      "  power: {} focal point{} at once, each with {:.1f} % of the array's power; if all request "
+      "the same pressure, the power limit of {:g} allows each {:.1f} % of full scale\n",
       foci, foci == 1 ? "" : "s", 100.0 * share.array, limit, 100.0 * share.pressure);
 }
 
-/// Why there is no plan.
+/// Prints why there is no plan.
 void print_nothing(std::FILE* out, const std::string& field, bool pressed, bool am) {
   const char* reason = !pressed ? "no pressure anywhere"
                        : am     ? "no focus would reach its skin"
@@ -270,8 +270,8 @@ void write_plan(const Result& r, const TargetField& target, const PipelineSettin
   write_file(json, plan_to_json(r.plan, target, extras, settings_groups(settings)));
 }
 
-/// Whether a plan counts on the width of the array's focus, where that is known; the paper's
-/// presets keep [plan] sigma.
+/// Whether plans are made for the width of the array's focus, if it is known; the paper's presets
+/// keep [plan] sigma.
 bool counts_on_own_width(const PipelineSettings& settings) {
   if (is_am(settings)) return true;
   return settings.plan.traits().is_fitted();
@@ -321,8 +321,8 @@ void write_results(const Result& r, const TargetField& target, const PipelineSet
   draw_figure(figure, given, settings);
 }
 
-/// Counts on the width of the array's focus where an array is given. @param other_widths gets the
-/// width besides that of the settings [m]. @return the array's width [m].
+/// Makes plans use the width of the array's focus if an array is given. @param other_widths gets
+/// the width that plans do not use [m]. @return the array's width [m].
 std::optional<double> use_own_width(const PlanOptionsGiven& given, const TargetField& target,
                                     PipelineSettings& settings, std::vector<double>& other_widths) {
   if (!given.common.array) return std::nullopt;
@@ -336,13 +336,13 @@ std::optional<double> use_own_width(const PlanOptionsGiven& given, const TargetF
   return own;
 }
 
-/// Fills in all scores, and that of what is felt if an array is given.
+/// Fills in all scores, including that of the percept if an array is given.
 void judge(const TargetField& target, const PipelineSettings& settings,
            const std::vector<double>& widths, bool by_felt, Result& r) {
   Progress progress("scoring the plan");
   score(target, settings, widths, progress, r);
   if (!by_felt) return;
-  progress.next("computing what is felt");
+  progress.next("computing the percept");
   r.quality.played.felt_skill = felt_skill_of(target, r.plan, settings);
 }
 

@@ -19,8 +19,7 @@ void add_plan(CLI::App& app, Work& work) {
       add_figure(*command, o->common,
                  "target, paths (or foci) and field; the six panels of the paper's Fig. 2 for its "
                  "presets (.png, .svg or .pdf)");
-  add_array(*command, o->common,
-            "plan with the width that the focus of an array has there: " + array_choices());
+  add_array(*command, o->common, "plan with the focus width of an array: " + array_choices());
   add_input(*command, o->common.files, "--beside", o->beside,
             "draw these digitised panels beside ours (JSON)")
       ->needs(figure);

@@ -25,12 +25,12 @@ int solve_command(const SolveOptionsGiven& options) {
   const Eigen::VectorXd errors = focus_errors(solution, target);
 
   std::FILE* out = prose(options.json);
-  fmt::print(out, "{} on {}: {} focal points, {:.1f} % of what they ask for\n", options.solver,
-             array.name, target.size(), 100.0 * solution.level);
+  fmt::print(out, "{} on {}: {} focal points at {:.1f} % of the requested pressure\n",
+             options.solver, array.name, target.size(), 100.0 * solution.level);
   fmt::print(out, "  {:>6} {:>10} {:>10} {:>22}\n", "focus", "asked Pa", "reached Pa",
              "error of its share, %");
   for (Eigen::Index m = 0; m < target.size(); ++m) {
-    // what is not asked for has no share
+    // a point without a requested pressure has no share
     const std::string error = target[m] > 0.0 ? fmt::format("{:.2f}", 100.0 * errors[m]) : "-";
     fmt::print(out, "  {:>6} {:>10.1f} {:>10.1f} {:>22}\n", m + 1, target[m],
                std::abs(solution.pressure[m]), error);

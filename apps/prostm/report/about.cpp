@@ -9,25 +9,27 @@ void make_about(const ReportWork& work, nlohmann::ordered_json& document) {
   auto& blocks = document["blocks"];
   if (work.quick) {
     blocks.push_back(text_block(
-        "This is a quick report: it has fewer fields, hands and speeds than a whole one, so its "
-        "numbers are rougher. Make a whole one without --quick."));
+        "This is a quick report: it has fewer fields, hands and speeds than a full one, so its "
+        "numbers are rougher. Make a full one without --quick."));
   }
   blocks.push_back(text_block(
-      "prostm {/values/version} computed all that stands here, with seed {/values/seed}: the "
+      "prostm {/values/version} computed everything on this page, with seed {/values/seed}: the "
       "tables and figures of the paper on path routing optimisation for spatiotemporal modulation "
-      "(Barreiro, Sinclair and Otaduy), what amplitude modulation, its baseline, makes of the same "
-      "fields, and what an array and the skin make of both. Each number comes from a file of this "
-      "run; report.json has them all."));
+      "(Barreiro, Sinclair and Otaduy), its baseline, amplitude modulation, on the same fields, "
+      "and "
+      "both played by an array and felt by a model of the skin. Each number comes from a file of "
+      "this run; report.json has them all."));
   blocks.push_back(text_block(
       "Nobody has felt any of this: the array is simulated, and so is the skin. Only Fig. 4 has "
-      "answers of people, those of the paper's own study. Rows on a shaded ground are the paper's, "
-      "from its own machine and its own scenes; they stand beside ours, but nothing makes them "
-      "comparable in more than their order of magnitude."));
+      "answers of people, those of the paper's own study. Rows on a shaded background are the "
+      "paper's, from its own machine and its own scenes; compare them with ours only by their "
+      "order "
+      "of magnitude."));
   if (!work.paper_file("fig4.json") || !work.paper_file("fig2.json")) {
     blocks.push_back(text_block(
-        "The paper's figures as data were not all there, so parts are missing: the scores of its "
+        "Some of the paper's own data were not found, so parts are missing: the scores of its "
         "participants (fig4.json) and the steps of its algorithm (fig2.json, fig2.field.json). "
-        "--paper-data names their folder."));
+        "Name their folder with --paper-data."));
   }
 }
 

@@ -7,7 +7,7 @@ struct Deviation {
   const char *what, *paper, *here, *why, *where;
 };
 
-/// As docs/design has them, in the order of the pipeline.
+/// The deviations stated in docs/design, in the order of the pipeline.
 constexpr Deviation kDeviations[] = {
     {"the smoke's pressure", "a pressure solve of unknown effort, 40 Jacobi sweeps as we take it",
      "two V-cycles of a multigrid method that start from the last step's pressure",
@@ -36,8 +36,8 @@ constexpr Deviation kDeviations[] = {
      "preset best, which lowers the error of the field of Eq. (1) itself",
      "a lower cost is not a better field (Quality)", "(P11)"},
     {"one plan and the next", "each field from the beginning",
-     "best goes on from the plan before, and compares with one from the beginning",
-     "paths move less from update to update, and what is new is still found",
+     "best continues from the previous plan, and compares with a plan from scratch",
+     "paths move less from update to update, and new contacts are still found",
      "planner-fit.md, From plan to plan"},
     {"length on uneven skin", "measured in the plane",
      "speed on the skin; best and fast bound the length there, too",

@@ -16,12 +16,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Keeps the first plan from some time on.
+/// Stores the first plan after a given time.
 class FirstPlan final : public RunObserver {
  public:
   FirstPlan(const ReportWork& work, double from) : work_(work), from_(from) {}
   bool on_plan(const WorldFrame& contact, const PlanFrame& plan) override {
-    if (plan_.status == PlanStatus::Planned) return false;  // made before the run had ended
+    if (plan_.status == PlanStatus::Planned) return false;  // arrived before the run ended
     if (contact.target.time < from_ || plan.status != PlanStatus::Planned) return true;
     contact_ = contact;
     plan_ = plan;
@@ -65,12 +65,12 @@ PlanFigure figure_of(const TargetField& target, const TracedPlan& traced,
   return figure;
 }
 
-/// Our steps on the paper's own field, and the paper's steps as they were read off its figure.
+/// Our steps on the paper's own field, and the paper's steps as digitised from its figure.
 void add_papers_field(const ReportWork& work, const PipelineSettings& settings, Json& document) {
   if (!work.paper_file("fig2.field.json") || !work.paper_file("fig2.json")) {
     document["blocks"].push_back(report::text_block(
-        "The paper's own field and steps are missing here: their files, fig2.field.json and "
-        "fig2.json, were not there (--paper-data)."));
+        "The paper's own field and steps are missing: their files, fig2.field.json and fig2.json, "
+        "were not found (--paper-data)."));
     return;
   }
   const std::string name = work.paper_data + "/fig2.json";

@@ -10,7 +10,7 @@
 namespace prostm::app {
 namespace {
 
-/// Programs that were ready to run, in the mean over the last minute.
+/// Returns the mean number of programs that were ready to run during the last minute.
 double load() {
   double mean = 0.0;
   return getloadavg(&mean, 1) == 1 ? mean : 0.0;

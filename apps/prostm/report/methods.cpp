@@ -94,12 +94,13 @@ void make_methods(const ReportWork& work, Json& document) {
   document["values"] = {{"tried", frames}};
   auto& blocks = document["blocks"];
   blocks.push_back(report::text_block(
-      "The array of 16 × 16 transducers plays what each way plans for {/values/tried} fields of "
-      "each scene, spread over its time; transducers follow their drives with their lag, and the "
-      "skin is the model of docs/design/skin.md. Levels depend on what is held equal, so "
-      "there are three tables of them. Fields are left out where the loop of a way takes too long "
-      "for its percept to be computed. \"Flat\" is no array's: the same pressure on all skin. "
-      "Ghosts are maxima of the percept, above half of its highest, where nothing is to be felt."));
+      "The array of 16 × 16 transducers plays the plans of each method for {/values/tried} fields "
+      "of each scene, spread over its time; transducers follow their drives with a lag, and the "
+      "skin is the model of docs/design/skin.md. Levels depend on the quantity that is held equal, "
+      "so there are three tables of them. Fields are left out if the loop of a method takes too "
+      "long for its percept to be computed. \"Flat\" is an idealised uniform field that no array "
+      "can make. Ghosts are maxima of the percept, above half of its peak, where the target has no "
+      "pressure."));
   const double all = 2.0 * frames;
   for (std::size_t s = 0; s < kReportScenes.size(); ++s) {
     const RecordingReader recording = recorded_fields(work, kReportScenes[s]);

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Runs a program without input and output. @return whether it ended well.
+/// Runs a program without input and output. @return whether it succeeded.
 bool ran(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -38,7 +38,7 @@ bool ran(std::vector<std::string> words) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/// A folder that is there as long as this is.
+/// A folder that exists as long as this object.
 class OwnFolder {
  public:
   OwnFolder() {

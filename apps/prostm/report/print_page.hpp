@@ -6,10 +6,11 @@
 
 namespace prostm::app {
 
-/// The first browser on PATH that can print a page: Chromium, by the names that it has.
+/// Returns the first browser on PATH that can print a page: Chromium, by its various names.
 std::optional<std::string> find_browser();
 
-/// Lets the browser print a page as a PDF. @return whether it did; what it said is lost.
+/// Lets the browser print a page as a PDF. @return whether it succeeded; its messages are
+/// discarded.
 bool print_page(const std::string& browser, const std::string& page, const std::string& pdf);
 
 }  // namespace prostm::app

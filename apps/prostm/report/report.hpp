@@ -1,6 +1,6 @@
 #pragma once
-/// The parts of prostm report. Each computes one subject of the page, and knows nothing of the
-/// others but the fields that the first of them recorded.
+/// The parts of prostm report. Each computes one subject of the page, and uses nothing of the
+/// others except the fields that the first of them recorded.
 
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -14,24 +14,24 @@
 
 namespace prostm::app {
 
-/// Thrown by progress when a signal came.
+/// Thrown by `progress` after a signal.
 struct ReportStopped {};
 
 /// The options and places that the parts share.
 struct ReportWork {
   bool quick = false;
   int seed = 1;
-  std::string paper_data;  ///< folder of the paper's figures as data; empty: not there
+  std::string paper_data;  ///< folder of the paper's figures as data; empty: none
   const report::PartFolder& folder;
-  /// Tells the share of the part that is done, 0..1. @throws ReportStopped
+  /// Reports the share of the part that is done, 0..1. @throws ReportStopped
   std::function<void(double share)> progress;
 
-  /// One value for a whole report, another for a quick one.
+  /// Returns one value for a full report, another for a quick one.
   template <class Value>
   Value full_or_quick(Value full, Value fast) const {
     return quick ? fast : full;
   }
-  /// The text of a file of the paper's data; nothing where it is not there. @throws InputError
+  /// Returns the text of a file of the paper's data, or nothing without it. @throws InputError
   std::optional<std::string> paper_file(const std::string& name) const;
   /// The settings of every part: prostm's own.
   PipelineSettings settings(const std::string& scene) const;
@@ -47,8 +47,7 @@ RecordingReader recorded_fields(const ReportWork& work, const std::string& scene
 /// The first patch of a frame.
 TargetField recorded_field(const RecordingReader& recording, int frame);
 
-/// Reads all of the paper's data that is there, before any work. @throws InputError for what is
-/// wrong with it.
+/// Reads all available data of the paper, before any work. @throws InputError for invalid data.
 void check_paper_data(const ReportWork& work);
 
 /// A subject of the page.

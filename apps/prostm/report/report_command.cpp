@@ -24,12 +24,12 @@ std::string paper_folder(const ReportOptionsGiven& given) {
   if (given.paper_data) {
     if (fs::is_directory(*given.paper_data)) return *given.paper_data;
     throw InputError("--paper-data " + *given.paper_data +
-                     " is no folder; it must hold fig4.json, fig2.json and fig2.field.json");
+                     " is not a folder; it must hold fig4.json, fig2.json and fig2.field.json");
   }
   return fs::is_directory(kPaperData) ? kPaperData : "";
 }
 
-/// @throws InputError for a folder that holds other things than a report.
+/// @throws InputError for a folder with files other than a report's.
 void check_folder(const std::string& out) {
   if (out.empty() || out.starts_with("--"))
     throw InputError("--out needs the name of a folder for the report");
@@ -38,17 +38,17 @@ void check_folder(const std::string& out) {
   if (!fs::is_directory(out)) throw InputError("--out " + out + " is a file; name a folder");
   if (fs::is_empty(out) || fs::is_directory(fs::path(out) / "parts")) return;
   throw InputError("--out " + out +
-                   " has files and is no report; name a new folder, or that of a report");
+                   " has other files than a report's; name a new folder, or that of a report");
 }
 
-/// How long is left, in words.
+/// Returns the remaining time, in words.
 std::string left_in_words(double seconds) {
   if (seconds < 60.0) return fmt::format("{:.0f} s left", seconds);
   return fmt::format("{:.0f} min {:.0f} s left", std::floor(seconds / 60.0),
                      std::fmod(seconds, 60.0));
 }
 
-/// Makes the parts that are not there yet, and says how far it is.
+/// Makes the missing parts, and shows the progress.
 class ReportRun {
  public:
   explicit ReportRun(const ReportOptionsGiven& given)
@@ -73,7 +73,7 @@ class ReportRun {
     return parts;
   }
 
-  /// How a picture of a part is read.
+  /// Returns the function that reads a part's picture.
   report::ReadPicture reader() const {
     return [this](const std::string& file) { return read_file(folder_.path(file)); };
   }
@@ -85,7 +85,7 @@ class ReportRun {
     return given_.quick ? part.quick_seconds : part.seconds;
   }
 
-  /// All that a part's numbers follow from.
+  /// Returns everything that determines a part's numbers.
   Json asked(const ReportPart& part) const {
     Json asked = {{"version", version_text()}, {"quick", given_.quick}, {"seed", given_.seed}};
     if (!part.of_paper) return asked;
@@ -120,7 +120,7 @@ class ReportRun {
 
   void tell(double share) {
     if (interrupt_.requested()) throw ReportStopped{};
-    constexpr double kFirst = 2.0;  // of work, before its pace is believed [s]
+    constexpr double kFirst = 2.0;  // work after which its pace is used for the estimate [s]
     const double done = done_ + share * cost(*now_);
     const double pace = done > kFirst ? since_start_.seconds() / done : 1.0;
     progress_.show(
@@ -146,7 +146,7 @@ Json all_json(const std::vector<report::Part>& parts) {
   return json;
 }
 
-/// The page as a PDF, where there is a browser. @return what became of it.
+/// Prints the page as a PDF, if there is a browser. @return a sentence about the result.
 std::string print(const std::string& page, const std::string& pdf) {
   const auto browser = find_browser();
   std::error_code ignored;
@@ -167,13 +167,12 @@ int report_command(const ReportOptionsGiven& given) {
   try {
     parts = run.all();
   } catch (const ReportStopped&) {
-    fmt::print(
-        "Stopped. The parts that are done stay in {}; the same command goes on from there.\n",
-        given.out);
+    fmt::print("Stopped. Finished parts are kept in {}; run the same command again to resume.\n",
+               given.out);
     return run.interrupt().status();
   }
   if (run.kept() > 0)
-    fmt::print("{} parts were there already (--fresh makes all anew)\n", run.kept());
+    fmt::print("{} parts were kept from an earlier run (--fresh makes them again)\n", run.kept());
   const fs::path out = given.out;
   const std::string page = (out / "index.html").string(), json = (out / "report.json").string();
   write_file(page, report::page_html(given.quick ? "prostm report, quick" : "prostm report", parts,

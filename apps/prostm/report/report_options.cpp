@@ -11,9 +11,10 @@ void add_report(CLI::App& app, Work& work) {
       "report", "every table and figure of the paper, computed here: one page; takes ten minutes");
   auto o = std::make_shared<ReportOptionsGiven>();
   command
-      ->add_option("--out", o->out,
-                   "folder for index.html, report.json and report.pdf; a report that was cut short "
-                   "goes on there")
+      ->add_option(
+          "--out", o->out,
+          "folder for index.html, report.json and report.pdf; a report that was interrupted "
+          "is resumed there")
       ->type_name("FOLDER")
       ->required();
   command
@@ -22,9 +23,9 @@ void add_report(CLI::App& app, Work& work) {
                    "fig4.json; default: " +
                        std::string(kPaperData) + ", if it is there")
       ->type_name("FOLDER");
-  command->add_option("--seed", o->seed, "of all that is random")->capture_default_str();
+  command->add_option("--seed", o->seed, "random seed")->capture_default_str();
   command->add_flag("--quick", o->quick, "fewer fields, hands and speeds: a minute");
-  command->add_flag("--fresh", o->fresh, "make parts anew that are there");
+  command->add_flag("--fresh", o->fresh, "make existing parts again");
   command->footer("Example:\n  prostm report --quick --out report");
   command->callback([o, &work] { work = {&o->files, [o] { return report_command(*o); }}; });
 }

@@ -10,9 +10,9 @@
 namespace prostm::app {
 namespace {
 
-constexpr double kFrom = 3.0;  // when jets have reached the hand [s]
+constexpr double kFrom = 3.0;  // time by which jets have reached the hand [s]
 
-/// Records a scene. @param begin of the share of the part that is done.
+/// Records a scene. @param begin share of the part that is done before it.
 void capture(const ReportWork& work, const std::string& scene, int frames, double begin) {
   const PipelineSettings settings = work.settings(scene);
   Pipeline pipeline(settings, work.hand(settings));
@@ -66,7 +66,7 @@ void make_scenes(const ReportWork& work, nlohmann::ordered_json& document) {
   document["files"] = {"one-plume.h5", "four-plumes.h5"};
   auto& blocks = document["blocks"];
   blocks.push_back(report::text_block(
-      "The tables below are of these fields, which this run made. A scripted hand hovers, sinks, "
+      "The tables below use these fields, which this run made. A scripted hand hovers, sinks, "
       "tilts and closes in smoke; a field is the pressure on its skin at one update. Its height "
       "({/values/height_mm:1} mm), its period ({/values/period_s:1} s) and the noise of its "
       "tracker ({/values/jitter_mm:1} mm) follow from seed {/values/seed}. The planner's settings "

@@ -8,7 +8,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// How far the part is.
+/// Counts the steps of the part for its progress.
 class Steps {
  public:
   Steps(const ReportWork& work, double all) : work_(work), all_(all) {}
@@ -21,7 +21,7 @@ class Steps {
   double all_, done_ = 0.0;
 };
 
-/// Adds the least and the greatest of values that depend on the skin.
+/// Adds the minimum and maximum of values that depend on the skin.
 void add_range(Json& row, const std::vector<double>& values) {
   row["low"] = std::ranges::min(values);
   row["high"] = std::ranges::max(values);

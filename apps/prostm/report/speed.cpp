@@ -1,4 +1,4 @@
-/// How fast the smoke and the focal points are computed, how exactly, and how late they come.
+/// Speed, accuracy and latency of the smoke and the focal points.
 #include <algorithm>
 #include <cmath>
 
@@ -31,7 +31,7 @@ Json quantiles(Json row, const Summary& summary, double scale) {
   return row;
 }
 
-/// One solver of the smoke's pressure, among the report's hand.
+/// The smoke with one pressure solver and the report's hand.
 class SteppedSmoke {
  public:
   SteppedSmoke(const ReportWork& work, const FluidSettings& fluid, WorkerPool& pool)
@@ -111,7 +111,7 @@ Json part_rows(const RunSummary& summary) {
   return rows;
 }
 
-/// Lets a run go on until its end.
+/// Lets a run continue until its end.
 class Watched final : public RunObserver {
  public:
   Watched(const ReportWork& work, double seconds) : work_(work), seconds_(seconds) {}
@@ -158,8 +158,9 @@ void make_fluid(const ReportWork& work, Json& document) {
       "Steps of 20 ms of four plumes with the report's hand, {/values/cells}³ cells, "
       "{/values/steps} steps of each solver after a start."));
   document["blocks"].push_back(report::table_block(
-      "What a solver leaves: of the divergence, over that before it (rms); the largest, in cells a "
-      "step; and its own estimate of the error of the pressure beside the hand, over that pressure",
+      "Remaining errors: rms divergence over that before the solve; largest divergence, in cells a "
+      "step; and the solver's own estimate of the pressure's error next to the hand, over that "
+      "pressure",
       {{"solver", "solver"},
        {"left", "divergence left", "%", 2},
        {"largest", "largest divergence", "1/step", 4},

@@ -18,7 +18,7 @@ Json or_null(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-/// The scores of the paper's participants; none where they are not there.
+/// Returns the scores of the paper's participants; none if their file is missing.
 std::vector<Answer> answers_of_people(const ReportWork& work) {
   const auto text = work.paper_file("fig4.json");
   return text ? answers_from_paper(*text, work.paper_data + "/fig4.json") : std::vector<Answer>();
@@ -141,7 +141,7 @@ void make_figure_four(const ReportWork& work, Json& document) {
   document["values"] = Json::object();
   if (answers.empty()) {
     blocks.push_back(report::text_block(
-        "Missing: the scores of the paper's participants, fig4.json, were not there "
+        "Missing: the scores of the paper's participants, fig4.json, were not found "
         "(--paper-data). prostm study analyse --figure draws this picture of any study."));
     return;
   }
@@ -168,7 +168,7 @@ void make_models(const ReportWork& work, Json& document) {
   bool stopped = false;
   std::mutex one_at_a_time;
   const auto hands = feel_hands(given, settings, [&](int done, int all) {
-    // called on two threads, out of which nothing may be thrown
+    // called on two threads, which must not throw
     const std::lock_guard lock(one_at_a_time);
     try {
       work.progress(static_cast<double>(done) / all);
@@ -188,12 +188,13 @@ void make_models(const ReportWork& work, Json& document) {
                         {"words", about_strength(rows, hands)}};
   auto& blocks = document["blocks"];
   blocks.push_back(report::text_block(
-      "These are models, never people. They tell one plume from four by what they feel through the "
-      "model of the skin (skin), by Eq. (1) (field), by the strength as a whole (strength), or not "
-      "at all (guess), on {/values/hands} simulated hands; shares with the range of 95 % of "
-      "{/values/studies} simulated studies. No model was fitted to the paper's scores: its people "
-      "had {/values/am} % with AM and {/values/pro_stm} % with PRO-STM. log L says how likely a "
-      "model makes these scores; it is missing where they are."));
+      "These are models, not people. They tell one plume from four by the percept of the skin "
+      "model "
+      "(skin), by Eq. (1) (field), by the overall strength (strength), or not at all (guess), on "
+      "{/values/hands} simulated hands; shares with the range of 95 % of {/values/studies} "
+      "simulated studies. No model was fitted to the paper's scores: its participants had "
+      "{/values/am} % with AM and {/values/pro_stm} % with PRO-STM. log L is the log-likelihood of "
+      "the paper's scores under a model; it is blank without these scores."));
   blocks.push_back(report::table_block("Right answers of models", share_columns(),
                                        observer_table(rows, people)));
   blocks.push_back(report::text_block("{/values/words}"));

@@ -17,7 +17,7 @@ std::vector<PlannerColumn> planners() {
           {"prostm, AM", Kind::Foci}};
 }
 
-/// A row of times: the mean of each stage, and how the total is spread.
+/// A row of times: the mean of each stage, and the spread of the total.
 Json time_row(const std::string& planner, const StageTimes& mean, double scale) {
   Json row = {{"planner", planner}};
   for (std::size_t i = 0; i < kPlanStages; ++i)
@@ -67,7 +67,7 @@ const std::vector<report::Column> kQuality = {
     {"planner", "planner"},         {"fields", "fields", "", 0}, {"rmse", "RMSE"},
     {"correlation", "correlation"}, {"skill_8", "skill_8"},      {"coverage", "coverage"}};
 
-/// Measures all planners on all fields of a scene. @param begin of the part's share that is done.
+/// Measures all planners on all fields of a scene. @param begin share of the part done before it.
 FieldBench measured(const ReportWork& work, const PipelineSettings& settings,
                     const std::string& scene, int repeats, double begin) {
   const RecordingReader recording = recorded_fields(work, scene);
@@ -91,13 +91,14 @@ void make_table_one(const ReportWork& work, Json& document) {
       "over "
       "the fields on which every planner found something. RMSE is of pressures over the field's "
       "highest. skill_8 is 1 for a perfect field and 0 for an even one, after both are blurred by "
-      "8.5 mm. AM stands here for its time: the paper calls Eq. (1) \"not suited for a "
+      "8.5 mm. AM is listed for its computing time only: the paper calls Eq. (1) \"not suited for "
+      "a "
       "quantitative (e.g., RMSE) comparison of STM and AM\"."));
   timing.push_back(report::text_block(
       "Times on one thread of this machine, the planners in turn, the median of {/values/repeats} "
       "runs on each field; textbook is a plain C++ program that follows the paper line by line. "
-      "Preset best makes all of its tries here; in real time it stops after 2 ms (Latency). Where "
-      "a planner has no such stage, there is a dash. Of AM the paper says: about "
+      "Preset best makes all of its tries here; in real time it stops after 2 ms (Latency). A dash "
+      "means that a planner has no such stage. For AM the paper states about "
       "{/values/paper_am_rate} updates a second."));
   for (std::size_t s = 0; s < kReportScenes.size(); ++s) {
     const std::string scene = kReportScenes[s];

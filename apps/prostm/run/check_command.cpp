@@ -16,13 +16,13 @@
 namespace prostm::app {
 namespace {
 
-constexpr double kAll = 18.5;                      // of the whole command, at most [s]
-constexpr double kLongest = 5.0, kShortest = 2.0;  // a trial [s]
-constexpr double kLeastLook = 1.5;                 // before a trial is given up [s]
-constexpr double kSleeps = 1.0;                    // watching a thread sleep [s]
+constexpr double kAll = 18.5;                      // time limit of the whole command [s]
+constexpr double kLongest = 5.0, kShortest = 2.0;  // durations of a trial [s]
+constexpr double kLeastLook = 1.5;                 // least time before a trial is given up [s]
+constexpr double kSleeps = 1.0;                    // time for measuring how late sleeps end [s]
 constexpr int kDoesNotHold = 1;                    // exit status
 
-/// Ends a trial as soon as it is known not to hold its rates.
+/// Ends a trial as soon as it is certain to miss its rates.
 class Watch final : public RunObserver {
  public:
   Watch(Pipeline& pipeline, const PipelineSettings& settings, double seconds, Progress& progress,
@@ -45,7 +45,7 @@ class Watch final : public RunObserver {
   }
 
  private:
-  /// Whether it holds if nothing more goes wrong.
+  /// Whether the trial holds if nothing more goes wrong.
   bool may_hold() {
     const DeviceInfo& device = pipeline_.device().info();
     summary_.device = pipeline_.device_stats();
@@ -58,7 +58,7 @@ class Watch final : public RunObserver {
   const double seconds_;
   Progress& progress_;
   const Interrupt& interrupt_;
-  RunSummary summary_;  // as it is at best, at the end
+  RunSummary summary_;  // the best possible one at the end
 };
 
 Trial make_trial(const CheckedSetup& setup, const std::optional<std::string>& scene, double seconds,
@@ -79,7 +79,7 @@ Trial make_trial(const CheckedSetup& setup, const std::optional<std::string>& sc
   return trial;
 }
 
-/// Trials from the defaults to the cheapest setup, until one holds or the time is over.
+/// Makes trials from the defaults to the cheapest setup, until one holds or the time is up.
 std::vector<Trial> make_trials(std::FILE* out, const std::optional<std::string>& scene,
                                std::span<const CheckedSetup> setups, const StageTimer& since_start,
                                const Interrupt& interrupt) {

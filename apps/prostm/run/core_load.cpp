@@ -20,7 +20,7 @@
 namespace prostm::app {
 namespace {
 
-/// Computes and touches memory, as another program would.
+/// Uses processor and memory, as another program would.
 void work(const std::atomic<bool>& works, const std::atomic<bool>& ends) {
   std::vector<double> numbers(1 << 18, 1.0);
   while (!ends) {
@@ -33,9 +33,9 @@ void work(const std::atomic<bool>& works, const std::atomic<bool>& ends) {
   }
 }
 
-/// The child: each byte from the pipe says whether to work; the pipe's end is its own.
+/// The child process: each byte from the pipe switches work on or off; it ends with the pipe.
 [[noreturn]] void serve(int pipe) {
-  // its parent ends it, after the results of a Ctrl-C are written
+  // the parent ends it, after a Ctrl-C once the results are written
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM})
     std::signal(signal, SIG_IGN);
   std::atomic<bool> works{false}, ends{false};

@@ -1,12 +1,12 @@
 #pragma once
-/// Work on all cores that a run has to share the machine with.
+/// Load on all cores, for runs that must share the machine.
 
 #include <sys/types.h>
 
 namespace prostm::app {
 
-/// A process of ordinary priority with as many threads as there are cores, which compute while they
-/// are told to. It ends with this program, however that ends.
+/// A process of ordinary priority with one thread per core, which compute while the load is
+/// switched on. It ends with this program, however that ends.
 class CoreLoad {
  public:
   /// @pre this process has one thread so far. @throws InputError where no process can be made.

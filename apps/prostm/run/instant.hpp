@@ -7,8 +7,8 @@
 
 namespace prostm::app {
 
-/// Draws the scene from the side, the targets and what is planned for them. @pre the run had
-/// settings.side_view, and the instant a hand under pressure. @throws InputError when the file
+/// Draws the scene from the side, the targets and their plans. @pre the run had
+/// settings.side_view, and the instant a hand under pressure. @throws InputError if the file
 /// cannot be written.
 void draw_instant(const WorldFrame& contact, const PlanFrame& planned,
                   const PipelineSettings& settings, const std::string& path);

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kLook = 0.02;  // [s]
 
-/// Characters that mute: a terminal tells no key's place, so these are M, and what keyboard layouts
-/// of other scripts have in its place (xkeyboard-config) or as their m.
+/// Characters that mute. A terminal does not report the position of a key, so these are M, and the
+/// characters that layouts of other scripts have at its position (xkeyboard-config) or as their m.
 constexpr std::u32string_view kMuteKeys =
     U" mM\uff4d\uff2d"                                   // Latin, and full width
     U"\u00b5\u03bc\u039c"                                // Greek
@@ -30,7 +30,7 @@ MuteWatch::MuteWatch(std::shared_ptr<Mute> mute, bool keys) : mute_(std::move(mu
 
 std::optional<std::string> MuteWatch::help() const {
   if (!keys_ || !keys_->available()) return std::nullopt;
-  return "Keys: m or space mutes the array, and again lets it sound; Ctrl-C ends the run.";
+  return "Keys: m or space mutes the array, and unmutes it; Ctrl-C ends the run.";
 }
 
 std::optional<std::string> MuteWatch::look() {

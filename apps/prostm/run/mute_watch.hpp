@@ -1,5 +1,5 @@
 #pragma once
-/// Mutes of a run, told in its terminal and set by its keys.
+/// Reports mutes of a run on its terminal, and sets them by keys.
 
 #include <memory>
 #include <optional>
@@ -12,12 +12,12 @@ namespace prostm::app {
 
 class MuteWatch {
  public:
-  /// @param keys whether m and space are to mute.
+  /// @param keys whether the keys m and space mute.
   MuteWatch(std::shared_ptr<Mute> mute, bool keys);
 
-  /// Names the keys, for the start; nothing without a terminal.
+  /// Returns a sentence about the keys, for the start; nothing without a terminal.
   std::optional<std::string> help() const;
-  /// Reads the keys. @return what is new, in a sentence.
+  /// Reads the keys. @return a sentence about a change, if any.
   std::optional<std::string> look();
 
  private:

@@ -27,11 +27,11 @@ namespace {
 
 constexpr double kTrackerLook = 0.1;  // [s]
 
-/// Records, keeps the instant nearest to one for the picture, and watches for signals and for a
-/// page's server that fails.
+/// Records, stores the instant for the picture, and stops the run on a signal or if the page's
+/// server fails.
 class Observer final : public RunObserver {
  public:
-  /// @param picture_at time of the picture, when there is to be one [s].
+  /// @param picture_at time of the picture [s]; nothing without a picture.
   Observer(Recorder* recorder, const View* view, std::optional<double> picture_at,
            const RunOptions& options, std::FILE* out)
       : recorder_(recorder), view_(view), picture_at_(picture_at), options_(options), out_(out) {}
@@ -72,21 +72,21 @@ class Observer final : public RunObserver {
   void on_rates(const std::string& news) override { progress_.say(out_, news); }
   void on_abandoned_pause(double time) override {
     progress_.say(
-        out_, fmt::format("No page is connected any more, so the paused run goes on, {}.",
+        out_, fmt::format("No page is connected any more, so the paused run resumes, {}.",
                           options_.stay ? "until Ctrl-C"
                                         : fmt::format("for {:.1f} s", options_.seconds - time)));
   }
-  /// Says when something mutes the array, and when it ends; in real time keys of the terminal do.
+  /// Reports when the array is muted or unmuted; in real time the terminal's keys mute it.
   void follow(std::shared_ptr<Mute> mute) {
     mutes_.emplace(std::move(mute), options_.mode == RunMode::RealTime);
     if (const auto help = mutes_->help()) progress_.say(out_, *help);
   }
-  /// Says what becomes of the array, and of a live tracker.
+  /// Reports changes of the array's and a live tracker's connection.
   void follow(Pipeline& pipeline) { pipeline_ = &pipeline; }
-  /// Sets the function to call when the run's seconds are over and it goes on.
+  /// Sets the function to call when the run's seconds are over but it continues.
   void on_report(std::function<void(const RunSummary&)> report) { report_ = std::move(report); }
   bool reported() const { return reported_; }
-  /// Nothing more comes.
+  /// Ends the output of this observer.
   void end() {
     mutes_.reset();
     progress_.clear();
@@ -112,7 +112,7 @@ class Observer final : public RunObserver {
     if (const auto news = tracker_news_.look(*tracker, now)) progress_.say(out_, *news);
   }
 
-  /// Says when an array that comes back by itself has gone, and when it is back.
+  /// Reports when an array that reconnects by itself is lost, and when it is back.
   void say_news_of_array() {
     if (pipeline_ == nullptr) return;
     const bool gone = pipeline_->device().status() == DeviceStatus::Vanished;
@@ -141,7 +141,7 @@ class Observer final : public RunObserver {
   Progress progress_{"running"};
 };
 
-/// Returns the run's options, and changes the settings as the command line asks.
+/// Returns the run's options, and applies the command line to the settings.
 RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) {
   RunOptions options;
   options.mode = given.stepped               ? RunMode::Stepped
@@ -157,7 +157,7 @@ RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) 
   return options;
 }
 
-/// How long the run is [s]. @param recording length of the hands' recording, 0 without one [s].
+/// Returns the run's duration [s]. @param recording length of the hands' recording, or 0 [s].
 double seconds_of(const RunOptionsGiven& given, double recording) {
   const double seconds = given.seconds.value_or(recording > 0.0 ? recording : 60.0);
   if (!(seconds > 0.0 && seconds <= 86400.0))
@@ -189,7 +189,7 @@ struct Ending {
   const Observer& observer;
   const View* view;
   std::FILE* out;
-  std::vector<std::string> written = {};  ///< files that are whole
+  std::vector<std::string> written = {};  ///< files that are complete
 
   void report(const RunSummary& summary) {
     const std::optional<TrackerStatus> tracker = pipeline.world_stage().hands().tracker_status();
@@ -245,7 +245,7 @@ struct Ending {
   }
 };
 
-/// Says beforehand what the user should know.
+/// Prints what the user should know before the run.
 void begin_words(const RunOptionsGiven& given, const PipelineSettings& settings) {
   std::FILE* out = prose(given.common.json);
   const std::string doubt = doubt_of_array(settings);
@@ -288,7 +288,7 @@ int run_command(const RunOptionsGiven& given) {
   observer.on_report([&ending](const RunSummary& summary) { ending.report(summary); });
   const RunSummary summary = run(pipeline, settings, options, observer);
   observer.end();
-  // at once, whatever becomes of the files
+  // at once, even if writing the files fails
   const int failed = summary.failure ? tell(summary.failure) : 0;
   const bool stayed = observer.reported();
   if (stayed) {

@@ -8,11 +8,12 @@
 namespace prostm::app {
 namespace {
 
-/// The page of a run.
+/// Adds the options of a run's page.
 void add_view(CLI::App& command, RunOptionsGiven& o) {
-  auto* view = command.add_flag(
-      "--view", o.view, "serve the page that shows and steers the run (docs/guides/viewing.md)");
-  auto* stay = command.add_flag("--stay", o.stay, "go on after --seconds, until Ctrl-C");
+  auto* view =
+      command.add_flag("--view", o.view,
+                       "serve a web page that shows and controls the run (docs/guides/viewing.md)");
+  auto* stay = command.add_flag("--stay", o.stay, "continue after --seconds, until Ctrl-C");
   const auto [port, address] = add_address(command, o);
   auto* tracker_file =
       command
@@ -23,7 +24,7 @@ void add_view(CLI::App& command, RunOptionsGiven& o) {
   for (CLI::Option* option : {stay, port, address, tracker_file}) option->needs(view);
 }
 
-/// Only a page writes the tracker's pose; a file that nobody named need not be writable until then.
+/// Only a page writes the tracker's pose, so its default file need not be writable before that.
 void expect_tracker_file(RunOptionsGiven& o) {
   if (!o.view) return;
   const auto check = o.tracker_file ? check_pose_output : nullptr;
@@ -32,20 +33,22 @@ void expect_tracker_file(RunOptionsGiven& o) {
 }
 
 void add_run(CLI::App& app, Work& work) {
-  auto* command =
-      app.add_subcommand("run", "a hand in smoke, felt through focal-point paths: the main job");
+  auto* command = app.add_subcommand(
+      "run", "simulate smoke on a hand (tracked, recorded or scripted) and render it, live");
   auto o = std::make_shared<RunOptionsGiven>();
   add_pipeline(*command, o->common, o->scene, o->hand, o->hand_size);
   add_device(*command, o->common);
   auto* figure = add_figure(*command, o->common, "a picture of one instant (.png, .svg or .pdf)");
-  command->add_option("--figure-at", o->figure_at, "its run time in seconds; default: the middle")
+  command
+      ->add_option("--figure-at", o->figure_at,
+                   "run time of the picture, in seconds; default: half-way")
       ->needs(figure);
   command->add_option("--seconds", o->seconds,
-                      "of run time; default: the recording's length, or 60");
+                      "duration of the run; default: the recording's length, or 60");
   auto* realtime = command->add_flag_callback(
       "--realtime", [] {}, "keep the clock's time (default)");
   auto* fast = command->add_flag("--as-fast-as-possible", o->as_fast_as_possible,
-                                 "no clock, nothing dropped");
+                                 "run without a clock, dropping nothing");
   auto* stepped = command->add_flag("--stepped", o->stepped, "the same on one thread");
   realtime->excludes(fast)->excludes(stepped);
   fast->excludes(stepped);
@@ -66,20 +69,20 @@ void add_run(CLI::App& app, Work& work) {
 }
 
 void add_soak(CLI::App& app, Work& work) {
-  auto* command =
-      app.add_subcommand("soak", "a long run that counts every dip, and says when it was and why");
+  auto* command = app.add_subcommand(
+      "soak", "endurance test: a long run that reports each dip with its time and cause");
   auto o = std::make_shared<SoakOptionsGiven>();
   RunOptionsGiven& run = o->run;
   add_pipeline(*command, run.common, run.scene, run.hand, run.hand_size);
   add_device(*command, run.common);
-  command->add_option("--minutes", o->minutes, "how long, 0.05 to 1440")->capture_default_str();
+  command->add_option("--minutes", o->minutes, "duration, 0.05 to 1440")->capture_default_str();
   command->add_flag("--load", o->load,
-                    "during the middle third, let another process use all cores");
+                    "load all cores with another process during the middle third");
   add_lock_memory(*command, run.lock_memory);
   add_view(*command, run);
   command->footer("Example:\n  prostm soak --minutes 0.1 --json soak.json");
   command->callback([o, &work] {
-    if (o->run.stay) throw InputError("--stay belongs to prostm run: a soak has an end");
+    if (o->run.stay) throw InputError("--stay belongs to prostm run: a soak ends after --minutes");
     expect_tracker_file(o->run);
     work = {&o->run.common.files, [o] { return soak_command(*o); }};
   });

@@ -11,7 +11,7 @@
 namespace prostm::app {
 namespace {
 
-/// A line of the counts: of which stage, and what.
+/// Prints a line of the counts: the stage and its text.
 void print_row(std::FILE* out, const char* stage, const std::string& text) {
   fmt::print(out, "  {:<8} {}\n", stage, text);
 }
@@ -43,7 +43,7 @@ void print_foci(std::FILE* out, const RunSummary& s, const PipelineSettings& set
                         s.emit.dropped_paths));
 }
 
-/// The means of what the world declares, in words: "; on average …", or nothing.
+/// Returns the means of the world's own quantities, in words: "; on average …", or nothing.
 std::string world_words(const RunSummary& s) {
   std::string words;
   for (std::size_t q = 0; q < s.world_quantities.size(); ++q) {
@@ -61,13 +61,13 @@ std::string world_words(const RunSummary& s) {
   return words;
 }
 
-/// Prints the largest levels, which are 0 where nothing sounded.
+/// Prints the largest levels, unless nothing was emitted.
 void print_levels(std::FILE* out, const RunSummary& s) {
   const SafetyStats& levels = s.safety;
   if (levels.acoustic_high <= 0.0) return;
   print_row(out, "levels",
-            fmt::format("at a focal point up to {:.0f} to {:.0f} Pa rms, {:.0f} to {:.0f} Pa of "
-                        "radiation pressure; at the head {:.0f} to {:.0f} dB, taken as {:.0f} dB "
+            fmt::format("peak at a focal point {:.0f} to {:.0f} Pa rms, {:.0f} to {:.0f} Pa of "
+                        "radiation pressure; at the head {:.0f} to {:.0f} dB, estimate {:.0f} dB "
                         "(docs/devices/safety.md); {:.1f} % weakened by caps, {:.1f} % by ramps",
                         levels.acoustic_low, levels.acoustic_high, levels.radiation_low,
                         levels.radiation_high, levels.head_low, levels.head_bound,
@@ -83,14 +83,15 @@ void print_output(std::FILE* out, const RunSummary& s) {
                         "weakened by the power limit; largest step {:.3f} mm",
                         e.samples, percent(e.saturated, e.samples), s.full_scale_pressure,
                         percent(e.limited, e.samples), e.max_focus_step * 1e3));
-  print_row(out, "array",
-            fmt::format("{}: {} blocks of {:.3g} ms; {} missed (nothing to play), {} late (covered "
-                        "by the queue unless missed); queue of {} blocks at the end",
-                        s.played_by.name, s.device.blocks, 1e3 * s.played_by.block_time(),
-                        s.device.missed_blocks, s.device.late_blocks, s.device.queue_blocks));
+  print_row(
+      out, "array",
+      fmt::format("{}: {} blocks of {:.3g} ms; {} missed (dropouts), {} late (absorbed by the "
+                  "queue unless missed); queue of {} blocks at the end",
+                  s.played_by.name, s.device.blocks, 1e3 * s.played_by.block_time(),
+                  s.device.missed_blocks, s.device.late_blocks, s.device.queue_blocks));
   if (s.device.lost_links > 0 || s.device.slow_blocks > 0)
     print_row(out, "link",
-              fmt::format("lost {} times, {:.1f} s in all; {} blocks missed because it was slow",
+              fmt::format("lost {} times, {:.1f} s in total; {} blocks missed because it was slow",
                           s.device.lost_links,
                           static_cast<double>(s.device.lost_blocks) * s.played_by.block_time(),
                           s.device.slow_blocks));
@@ -166,11 +167,11 @@ void print_times(std::FILE* out, const std::string& name, const Summary& t,
              thousandths(t.p50 * 1e3), thousandths(t.p99 * 1e3), thousandths(t.max * 1e3), meaning);
 }
 
-/// The meaning of each part of a latency, by LatencyPart.
+/// Meaning of each LatencyPart.
 constexpr std::array<const char*, kLatencyParts> kPartMeanings = {
     "the frame waits for the next step",
     "the step begins late",
-    "the hand is filtered and drawn on the grid",
+    "the hand is filtered and rasterised on the grid",
     "the smoke meets the hand; the rest of its step was done before",
     "the target is made",
     "the planner wakes up",
@@ -180,7 +181,7 @@ constexpr std::array<const char*, kLatencyParts> kPartMeanings = {
     "the lap that is being drawn ends",
     "the device plays what was queued before, and passes it on"};
 
-/// Prints what the device has to do with the latency: the time between its blocks, and its queue.
+/// Prints the device's part of the latency: the time between its blocks, and its queue.
 void print_share_of_device(std::FILE* out, const RunSummary& s) {
   const double block = s.latency_parts[kBlockWait].mean, queue = s.latency_parts[kQueuePart].mean;
   fmt::print(out,
@@ -210,7 +211,7 @@ void print_latency(std::FILE* out, const RunSummary& s) {
 }
 
 void print_stages(std::FILE* out, const RunSummary& s) {
-  fmt::print(out, "\nWork, how long a stage computed each time it ran, waiting left out\n");
+  fmt::print(out, "\nComputing time of each stage, each time it ran, without waiting\n");
   print_heading(out);
   for (const StageSummary& stage : stage_summaries()) {
     const Summary& times = s.*stage.times;
@@ -226,7 +227,7 @@ nlohmann::ordered_json parts_json(const std::array<Summary, kLatencyParts>& part
   return json;
 }
 
-/// The numbers of the run, with the means of what the world declares before its resets.
+/// Returns the numbers of the run; the means of the world's own quantities precede its resets.
 nlohmann::ordered_json run_json(const RunSummary& s) {
   nlohmann::ordered_json json;
   const nlohmann::ordered_json numbers = quantities_to_json(s);

@@ -10,13 +10,13 @@
 
 namespace prostm::app {
 
-/// prostm-run/1, see docs/guides/running.md.
+/// Returns the summary as prostm-run/1, see docs/guides/running.md.
 nlohmann::ordered_json summary_json(const RunSummary& summary, const PipelineSettings& settings,
                                     const Verdict& verdict);
 
-/// The verdict, then the same numbers under headings. @param tracker of hands tracked live.
+/// Prints the verdict, then the same numbers under headings. @param tracker of hands tracked live.
 /// @param reading of a recording that is played, or null.
-/// @param stopped_by what ended a run that was cut short, Interrupt::cause().
+/// @param stopped_by cause of ending a run early, Interrupt::cause().
 void print_summary(std::FILE* out, const RunSummary& summary, const PipelineSettings& settings,
                    const Verdict& verdict, const std::optional<TrackerStatus>& tracker,
                    const HandReading* reading, const std::string& stopped_by);

@@ -21,15 +21,15 @@ namespace {
 
 constexpr int kDipped = 1;              // exit status
 constexpr double kLookAtUse = 0.25;     // [s]
-constexpr std::int64_t kMostSaid = 20;  // dips of a part on the terminal
+constexpr std::int64_t kMostSaid = 20;  // most dips of a part that the terminal shows
 
 std::string name_of_part(int part, const SoakPart& of) {
   constexpr std::array<const char*, 3> kOrder = {"first", "second", "last"};
   return fmt::format("{} third, {}", kOrder[static_cast<std::size_t>(part)],
-                     of.loaded ? "beside other work on all cores" : "quiet");
+                     of.loaded ? "all cores loaded" : "quiet");
 }
 
-/// Counts what goes wrong, and loads the machine when it is time.
+/// Counts dips, and loads the machine during the middle third.
 class SoakObserver final : public RunObserver {
  public:
   SoakObserver(SoakLog& log, Pipeline& pipeline, const PipelineSettings& settings, double seconds,
@@ -57,7 +57,7 @@ class SoakObserver final : public RunObserver {
   }
 
   bool on_progress(double time) override {
-    // the clock's, so that what stands still is seen
+    // wall-clock time, so that a run that stands still is noticed
     const double now = since_start_.seconds();
     if (view_ != nullptr) view_->check();
     counts_.device = pipeline_.device_stats();
@@ -83,7 +83,7 @@ class SoakObserver final : public RunObserver {
     return !interrupt_.requested();
   }
 
-  /// Nothing more comes.
+  /// Ends the output of this observer.
   void end() {
     if (load_ != nullptr) load_->set(false);
     progress_.clear();
@@ -115,8 +115,8 @@ class SoakObserver final : public RunObserver {
   void tell_part(int part) {
     const SoakPart& of = log_.parts()[static_cast<std::size_t>(std::max(part, 0))];
     progress_.say(out_,
-                  fmt::format("  {} dips, {} late blocks that the queue covered; smoke {:.1f} "
-                              "Hz, plans {:.1f} Hz",
+                  fmt::format("  {} dips, {} late blocks absorbed by the queue; smoke {:.1f} Hz, "
+                              "plans {:.1f} Hz",
                               of.dips, of.covered, of.world_rate, of.plan_rate));
   }
 
@@ -173,12 +173,12 @@ std::string judged(const SoakLog& log, bool stopped) {
     covered += part.covered;
   }
   return fmt::format(
-      "{}{} dips while the machine was quiet, {} beside other work; {} late blocks were covered by "
-      "the queue, and nobody feels those.",
+      "{}{} dips while the machine was quiet, {} under load; {} late blocks were absorbed by the "
+      "queue, so they were not felt.",
       stopped ? "Cut short: " : "", quiet, loaded, covered);
 }
 
-/// Says once what the system allows.
+/// Prints once what the system allows.
 nlohmann::ordered_json tell_limits(bool locks, std::FILE* out) {
   const bool priority = realtime_limits().priority, locked = locks && lock_memory();
   fmt::print(out, "{}\n", priority_sentence(priority));

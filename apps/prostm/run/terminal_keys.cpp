@@ -26,7 +26,7 @@ void restore() {
   if (changed.exchange(false) && in_foreground()) tcsetattr(STDIN_FILENO, TCSANOW, &before);
 }
 
-/// Keys come at once and are not shown. False if the terminal does not do that.
+/// Makes the terminal pass keys on at once and not echo them. False if it cannot.
 bool take_terminal() {
   termios now{};
   if (tcgetattr(STDIN_FILENO, &now) != 0) return false;
@@ -54,7 +54,7 @@ TerminalKeys::~TerminalKeys() {
 
 std::optional<unsigned char> TerminalKeys::next_byte() {
   if (!available_ || !in_foreground()) return std::nullopt;
-  // after the program was stopped, its terminal is as the shell left it
+  // after the program was suspended, the terminal has the shell's settings
   if (!take_terminal()) return std::nullopt;
   pollfd waiting{STDIN_FILENO, POLLIN, 0};
   if (poll(&waiting, 1, 0) != 1 || (waiting.revents & POLLIN) == 0) return std::nullopt;
@@ -63,7 +63,7 @@ std::optional<unsigned char> TerminalKeys::next_byte() {
   return byte;
 }
 
-/// Skips what follows Escape at once: "[" or "O", parameters and a letter, or the key of Alt.
+/// Skips the rest of an escape sequence: "[" or "O", parameters and a letter, or the key with Alt.
 void TerminalKeys::skip_sequence() {
   std::optional<unsigned char> byte = next_byte();
   if (byte != '[' && byte != 'O') return;

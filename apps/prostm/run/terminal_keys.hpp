@@ -5,9 +5,10 @@
 
 namespace prostm::app {
 
-/// Reads keys as they are pressed, where standard input is a terminal and the program is in its
-/// foreground; signals from the keyboard stay signals. The terminal is as before after this is
-/// gone, and after any signal that can be caught ends the program. One at a time.
+/// Reads keys as they are pressed, if standard input is a terminal and the program is in its
+/// foreground; keys that send signals still do. The terminal's settings are restored on
+/// destruction, and when any signal that can be caught ends the program. At most one object at a
+/// time.
 class TerminalKeys {
  public:
   TerminalKeys();
@@ -15,9 +16,9 @@ class TerminalKeys {
   TerminalKeys(const TerminalKeys&) = delete;
   TerminalKeys& operator=(const TerminalKeys&) = delete;
 
-  /// Whether keys could be read when this was made.
+  /// Whether keys could be read at construction.
   bool available() const { return available_; }
-  /// Returns the oldest character that was typed and not read; nothing without one. The terminal
+  /// Returns the oldest unread character; nothing without one. The terminal
   /// sends UTF-8. The sequences of arrows and other keys without a character are skipped, as are
   /// keys with Alt. Does not wait.
   std::optional<char32_t> next();

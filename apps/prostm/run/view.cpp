@@ -44,7 +44,7 @@ void check_view(const RunOptionsGiven& given, bool realtime) {
 
 View::View(const RunOptionsGiven& given, const PipelineSettings& settings) : given_(given) {
   link_.settings.pipeline = settings;
-  // the widths of the array's focus once, not at every change
+  // computes the widths of the array's focus once, not at every change
   PipelineSettings with_widths = settings;
   with_widths.array_width = true;
   link_.settings.pipeline.plan.widths = plan_settings(with_widths, settings.emission_rate()).widths;
@@ -87,7 +87,7 @@ void View::start(bool guests) {
 void View::warn(std::FILE* out) const {
   if (!server_->loopback()) {
     fmt::print(out,
-               "The page listens on {}: anyone who reaches that address can see and steer this "
+               "The page listens on {}: anyone who reaches that address can see and control this "
                "run.\n",
                given_.view_address.value_or(""));
   }
@@ -124,7 +124,7 @@ StudyView& View::serve(Pipeline& pipeline, StudySession& session,
 }
 
 void View::announce(std::FILE* out) const {
-  fmt::print(out, "The run goes on at {} until Ctrl-C.\n", server_->url());
+  fmt::print(out, "The run continues at {} until Ctrl-C.\n", server_->url());
   std::fflush(out);
 }
 

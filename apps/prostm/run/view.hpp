@@ -14,29 +14,29 @@
 
 namespace prostm::app {
 
-/// @throws InputError for options of the page that do not go together.
+/// @throws InputError for options of the page that contradict each other.
 void check_view(const RunOptionsGiven& given, bool realtime);
 
-/// Everything that a page needs, from before the pipeline is made until after it has run.
+/// Everything that a page needs. Created before the pipeline, and destroyed after it.
 class View {
  public:
   View(const RunOptionsGiven& given, const PipelineSettings& settings);
 
-  /// Those to make the pipeline with: all that the page can change is in them.
+  /// The settings for the pipeline, with everything that the page can change.
   const PipelineSettings& settings() const { return link_.settings.pipeline; }
   LiveLink& link() { return link_; }
-  /// The hands that the page's own takes over from.
+  /// Returns hands that switch between `base` and the page's own hand.
   std::unique_ptr<HandSource> behind_the_page(std::unique_ptr<HandSource> base);
-  /// Starts the server, and prints where it is.
+  /// Starts the server, and prints its address.
   void serve(Pipeline& pipeline, std::FILE* out);
-  /// Starts the server of a study's two pages, and prints where they are. @return its view.
+  /// Starts the server of a study's two pages, and prints their addresses. @return its view.
   StudyView& serve(Pipeline& pipeline, StudySession& session, std::optional<Rehearsal> rehearsal,
                    MarkerSender& markers, std::FILE* out);
-  /// Ends the server; what it showed is free to be used.
+  /// Stops the server; the pipeline may be destroyed afterwards.
   void stop() { server_.reset(); }
-  /// @throws when the server has failed.
+  /// @throws if the server has failed.
   void check() const { server_->check(); }
-  /// Says that the run goes on, and where.
+  /// Prints that the run continues, and the page's address.
   void announce(std::FILE* out) const;
 
  private:

@@ -44,7 +44,7 @@ void check(const SimulateOptionsGiven& given) {
   require_between("--seed", given.seed, 0, 1'000'000'000);
 }
 
-/// The scores of the paper's participants; none where their file is not.
+/// Returns the scores of the paper's participants; none if their file is missing.
 std::vector<Answer> people_of(const SimulateOptionsGiven& given) {
   const std::string file = given.paper_data.value_or(kPaperData) + "/fig4.json";
   if (!given.paper_data && !std::filesystem::exists(file)) return {};
@@ -66,7 +66,7 @@ void write_answers(const SimulateOptionsGiven& given, const std::vector<Observer
   write_file(given.answers, tidy_csv(answers));
 }
 
-/// Both scenes on all hands; fewer when a signal comes.
+/// Computes the percepts of both scenes on all hands; of fewer hands after a signal.
 std::vector<HandPercepts> feel(const SimulateOptionsGiven& given, const PipelineSettings& settings,
                                const Interrupt& interrupt) {
   const StageTimer timer;
@@ -106,8 +106,8 @@ int simulate_command(const SimulateOptionsGiven& given) {
   const std::string strength = about_strength(rows, hands);
   fmt::print(out, "\nIn the paper people had {:.0f} % with am and {:.0f} % with pro-stm.{}\n{}\n",
              100.0 * kStudyMethods[0].of_people, 100.0 * kStudyMethods[1].of_people,
-             people.empty() ? fmt::format(" Each one's scores, {}/fig4.json, are not there, so "
-                                          "likelihoods are missing (--paper-data).",
+             people.empty() ? fmt::format(" The participants' scores, {}/fig4.json, were not "
+                                          "found, so likelihoods are missing (--paper-data).",
                                           kPaperData)
                             : std::string(),
              strength);

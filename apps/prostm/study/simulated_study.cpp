@@ -12,9 +12,9 @@
 namespace prostm::app {
 namespace {
 
-constexpr int kMoments = 10;  // of each scene and hand: half for training, half for trials
+constexpr int kMoments = 10;  // moments per scene and hand: half for training, half for trials
 
-/// One kind of model, and what it takes from a percept.
+/// One kind of model observer, and the features it takes from a percept.
 struct Observer {
   const char* name;
   ObserverNoise noise;
@@ -146,7 +146,7 @@ std::array<SimulatedShare, 3> shares_of(const std::vector<Answer>& answers) {
 
 std::string about_strength(const std::vector<ObserverRow>& rows,
                            const std::vector<HandPercepts>& hands) {
-  constexpr double kCue = 0.525;  // share of right answers above which strength tells
+  constexpr double kCue = 0.525;  // share of right answers above which strength is a cue
   std::vector<std::string> said;
   bool is_cue = false;
   for (const StudyMethod& method : kStudyMethods) {

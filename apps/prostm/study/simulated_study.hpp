@@ -1,6 +1,6 @@
 #pragma once
-/// Model observers in the paper's study, from scenes on hands to shares of right answers. All of it
-/// is a model, never people.
+/// Model observers in the paper's study, from scenes on hands to shares of right answers. These are
+/// models, not people.
 
 #include <array>
 #include <functional>
@@ -15,19 +15,20 @@
 
 namespace prostm::app {
 
-/// One method, by the name that answers have.
+/// One method, with its name in answers.
 struct StudyMethod {
   const char* name;
   std::vector<StimulusPercept> ScenePercepts::*percepts;
-  double of_people;  ///< share of right answers in the paper
+  double of_people;  ///< share of right answers of people in the paper
 };
 inline constexpr std::array kStudyMethods = {StudyMethod{"am", &ScenePercepts::am, 0.61},
                                              StudyMethod{"pro-stm", &ScenePercepts::pro_stm, 0.76}};
 
 using HandPercepts = std::array<ScenePercepts, 2>;  ///< of each of kStudyScenes
 
-/// Renders both scenes on all hands and feels them. @param go_on is told how many of all moments
-/// are done, from either of two threads; false ends it. @return fewer hands where it was ended.
+/// Renders both scenes on all hands and computes their percepts. @param go_on gets the numbers of
+/// moments done and in total, on either of two threads; returning false stops. @return fewer hands
+/// if stopped.
 std::vector<HandPercepts> feel_hands(const SimulateOptionsGiven& given,
                                      const PipelineSettings& settings,
                                      const std::function<bool(int done, int all)>& go_on);
@@ -48,12 +49,12 @@ std::vector<ObserverRow> observer_rows(const std::vector<HandPercepts>& hands,
 /// The scores of people as shares, with Wilson's intervals.
 std::array<SimulatedShare, 3> shares_of(const std::vector<Answer>& answers);
 std::vector<Answer> answers_with(const std::vector<Answer>& answers, const std::string& method);
-/// Says how well strength alone tells the scenes apart.
+/// Returns a sentence on how well strength alone distinguishes the scenes.
 std::string about_strength(const std::vector<ObserverRow>& rows,
                            const std::vector<HandPercepts>& hands);
 
 nlohmann::ordered_json rows_json(const std::vector<ObserverRow>& rows);
-/// The paper's shares, and those of its participants where their scores are there.
+/// Returns the paper's shares, and those of its participants if their scores are given.
 nlohmann::ordered_json people_json(const std::vector<Answer>& people);
 
 }  // namespace prostm::app

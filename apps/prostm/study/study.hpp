@@ -12,14 +12,14 @@
 
 namespace prostm::app {
 
-/// A p as it stands in a table.
+/// Formats a p value for a table.
 std::string p_text(double p);
-/// The scene, or "all scenes".
+/// Returns the scene's name, or "all scenes".
 std::string scene_name(const SceneResult& scene);
-/// The width of a column of names, its heading's at least.
+/// Returns the width of a column of names, at least that of its heading.
 std::size_t width_of(std::string_view heading, const std::vector<std::string>& names);
 
-/// Trials without an answer, by method and scene; nothing if there are no such trials.
+/// Prints the trials without an answer by method and scene; nothing if there are no such trials.
 void print_missing(std::FILE* out, const std::vector<MissingAnswers>& missing);
 nlohmann::ordered_json missing_json(const std::vector<MissingAnswers>& missing);
 

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The stimulus of these settings: the limits of speeds and periods, as they are played.
+/// Returns the stimulus of these settings: the limits of speeds and periods, as played.
 Json stimulus_json(const PipelineSettings& s) {
   Json json = {{"method", name_of(s.method)}, {"full_scale_pressure", nullptr}};
   if (s.emit.full_scale_pressure > 0.0) json["full_scale_pressure"] = s.emit.full_scale_pressure;
@@ -48,7 +48,7 @@ std::string in_words(const Json& stimulus) {
       stimulus["longest_path_mm"].get<double>(), stimulus["gain"].get<double>(), scale);
 }
 
-/// A method at one level of the setting that is varied.
+/// Returns a method at one level of the varied setting.
 Json level_json(const Protocol& protocol, PipelineSettings settings, double level) {
   const double set = set_level(settings, protocol.level.setting, level);
   return {{"level", set}, {"stimulus", stimulus_json(settings)}};

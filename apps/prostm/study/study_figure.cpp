@@ -9,7 +9,7 @@
 namespace prostm::app {
 namespace {
 
-/// Brackets join methods that differ by one test or the other, and say both p.
+/// Returns brackets that join methods that differ by either test, with both p values.
 std::vector<ShareBracket> brackets_of(const SceneResult& scene, double alpha) {
   std::vector<ShareBracket> out;
   const auto place = [&](const std::string& method) {

@@ -9,7 +9,7 @@ namespace prostm::app {
 namespace {
 
 void add_study_run(CLI::App& study, Work& work) {
-  auto* command = study.add_subcommand("run", "leads a participant through a protocol");
+  auto* command = study.add_subcommand("run", "lead a participant through a protocol");
   auto o = std::make_shared<StudyRunOptionsGiven>();
   RunOptionsGiven& run = o->run;
   add_input(*command, run.common.files, "protocol", o->protocol,
@@ -22,16 +22,17 @@ void add_study_run(CLI::App& study, Work& work) {
       ->type_name("FOLDER")
       ->capture_default_str();
   command
-      ->add_option("--replaces", o->replaces,
-                   "take the place of this participant: the same methods and orders; analyse then "
-                   "leaves the replaced one out")
+      ->add_option(
+          "--replaces", o->replaces,
+          "replace this participant, with the same methods and orders; analyse then leaves the "
+          "replaced one out")
       ->type_name("NUMBER");
-  command->add_flag("--resume", o->resume, "go on with a participant who has begun");
+  command->add_flag("--resume", o->resume, "resume the session of a participant who has begun");
   command->add_flag("--take-over", o->take_over,
-                    "replace the lock file of a run on another machine that no longer runs");
+                    "replace the lock file of a run on another machine that has ended");
   command->add_option("--rehearse", o->rehearse,
-                      "answer so many trials at random, 0 all of them, without people; the file's "
-                      "name begins with rehearsal");
+                      "rehearse without a person: answer so many trials at random (0: all); the "
+                      "file's name begins with rehearsal");
   command
       ->add_option("--markers", o->markers,
                    "send a marker when each stimulus begins and ends: udp://HOST:PORT or "
@@ -76,7 +77,7 @@ void add_study_check(CLI::App& study, Work& work) {
 }
 
 void add_status(CLI::App& study, Work& work) {
-  auto* command = study.add_subcommand("status", "how full each group is, and who took part");
+  auto* command = study.add_subcommand("status", "show how full each group is, and who took part");
   auto o = std::make_shared<StudyStatusOptionsGiven>();
   command
       ->add_option("answers", o->answers, "folders of prostm study run --answers, or files in them")
@@ -87,7 +88,7 @@ void add_status(CLI::App& study, Work& work) {
   command->callback([o, &work] { work = {&o->files, [o] { return study_status_command(*o); }}; });
 }
 
-/// How files of answers are read.
+/// Adds the options for reading files of answers.
 void add_reading(CLI::App& command, ReadingSettings& reading) {
   command
       .add_option("--columns", reading.columns,
@@ -100,26 +101,26 @@ void add_reading(CLI::App& command, ReadingSettings& reading) {
           [&reading](const std::string& name) {
             reading.prefix = from_name<IdPrefix>(name, "--prefix");
           },
-          "put before participants' names: folder or file, two people with one number in two files "
-          "are told apart; none, one name is one person")
+          "prefix of participants' names: folder or file, which keeps equal numbers in different "
+          "files apart; none, one name is one person")
       ->type_name("none|folder|file");
   command
       .add_option(
           "--rename", reading.rename,
-          "give a name another one, as participant:01=1, method:A=am or scene:S1=one-plume; "
-          "may be given several times")
+          "change a name, as participant:01=1, method:A=am or scene:S1=one-plume; may be given "
+          "several times")
       ->type_name("KIND:OLD=NEW")
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
   command.add_flag("--merge-spellings", reading.merge_spellings,
-                   "names that differ in spelling alone (01 and 1) are one");
-  command.add_flag("--pool", reading.pool,
-                   "take answers to different stimuli with the same name together");
+                   "treat names that differ only in spelling (01 and 1) as the same");
+  command.add_flag("--pool", reading.pool, "pool answers to different stimuli with the same name");
 }
 
 void add_analyse(CLI::App& study, Work& work) {
-  auto* command = study.add_subcommand("analyse", "what answers do and do not support");
+  auto* command =
+      study.add_subcommand("analyse", "analyse answers: shares or thresholds, intervals and tests");
   auto o = std::make_shared<AnalyseOptionsGiven>();
   add_input(
       *command, o->files, "answers", o->answers,
@@ -127,13 +128,17 @@ void add_analyse(CLI::App& study, Work& work) {
       "docs/study/study-files.md), or the scores of the paper's Fig. 4 (.json)")
       ->required();
   add_reading(*command, o->reading);
-  command->add_option("--chance", o->settings.chance, "share of right answers that guessing makes")
+  command->add_option("--chance", o->settings.chance, "share of right answers by guessing")
       ->capture_default_str();
-  command->add_option("--level", o->settings.level, "of intervals; tests take 1 minus it")
+  command
+      ->add_option("--level", o->settings.level,
+                   "confidence level of intervals; tests use 1 minus it")
       ->capture_default_str();
-  command->add_option("--power", o->settings.power, "for which participants are planned")
+  command
+      ->add_option("--power", o->settings.power,
+                   "power for which the number of participants is computed")
       ->capture_default_str();
-  command->add_option("--seed", o->settings.seed, "of random splits of many participants")
+  command->add_option("--seed", o->settings.seed, "random seed for splits of many participants")
       ->capture_default_str();
   command->add_option("--guess", o->settings.guess,
                       "share of right answers at low levels; default: --chance, or 0 where "
@@ -141,7 +146,7 @@ void add_analyse(CLI::App& study, Work& work) {
   command->add_option("--lapse", o->settings.lapse,
                       "share of wrong answers at high levels; default: 0.02");
   command->add_flag("--fit-lapse", o->settings.fit_lapse,
-                    "fit that share to the answers, from 0 to 0.2");
+                    "fit the lapse share to the answers, from 0 to 0.2");
   add_json(*command, o->files, o->json);
   add_output(*command, o->files, "--figure", o->figure, check_figure,
              "shares as the paper's Fig. 4, or psychometric functions where answers have levels "
@@ -156,24 +161,31 @@ void add_analyse(CLI::App& study, Work& work) {
 
 void add_simulate(CLI::App& study, Work& work) {
   auto* command = study.add_subcommand(
-      "simulate", "the paper's study with model observers in place of people; takes a minute");
+      "simulate",
+      "simulate the paper's study with model observers in place of people; takes a minute");
   auto o = std::make_shared<SimulateOptionsGiven>();
-  command->add_option("--participants", o->shape.participants, "with each method")
+  command
+      ->add_option("--participants", o->shape.participants,
+                   "number of participants with each method")
       ->capture_default_str();
-  command->add_option("--trials", o->shape.trials, "of each participant, half with each scene")
+  command
+      ->add_option("--trials", o->shape.trials, "trials of each participant, half with each scene")
       ->capture_default_str();
-  command->add_option("--studies", o->studies, "that intervals are taken over")
+  command->add_option("--studies", o->studies, "number of simulated studies for the intervals")
       ->capture_default_str();
-  command->add_option("--hands", o->hands, "of different size and tremor to draw participants from")
+  command
+      ->add_option("--hands", o->hands,
+                   "number of hands, of different size and tremor, to draw participants from")
       ->capture_default_str();
   add_name(*command, "--preset", o->preset,
            "of pro-stm: " +
                listed(std::vector<std::string>(kNames<Preset>.begin(), kNames<Preset>.end())))
       ->capture_default_str();
-  command->add_option("--noise", o->noise, "factor of the observers' own noise")
+  command->add_option("--noise", o->noise, "factor on the observers' own noise")
       ->capture_default_str();
-  command->add_option("--grid", o->grid, "cells of the smoke along an edge")->capture_default_str();
-  command->add_option("--seed", o->seed, "of hands and answers")->capture_default_str();
+  command->add_option("--grid", o->grid, "cells along each edge of the fluid's box")
+      ->capture_default_str();
+  command->add_option("--seed", o->seed, "random seed of hands and answers")->capture_default_str();
   command
       ->add_option("--paper-data", o->paper_data,
                    "folder with the paper's scores, fig4.json; default: " +

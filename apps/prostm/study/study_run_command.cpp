@@ -23,7 +23,7 @@ namespace {
 constexpr int kMostParticipants = 9999;
 constexpr double kADay = 86400.0;  // [s]
 
-/// Prints what has come up: markers that do not arrive, or what the session waits for.
+/// Prints new messages: markers that do not arrive, or what the session waits for.
 template <class Source>
 void tell_news(Source& source) {
   std::string sentence;
@@ -33,7 +33,7 @@ void tell_news(Source& source) {
   }
 }
 
-/// Ends the run when the session is closed, on a signal, and when the pages' server fails.
+/// Ends the run when the session is closed, on a signal, or if the pages' server fails.
 class Observer final : public RunObserver {
  public:
   Observer(const View& view, StudyView& study, MarkerSender& markers, const Interrupt& interrupt)
@@ -55,7 +55,7 @@ class Observer final : public RunObserver {
   const Interrupt& interrupt_;
 };
 
-/// Closes the pages before what they show goes, however a run ends.
+/// Closes the pages before the data they show is destroyed, however a run ends.
 class PagesEnd {
  public:
   explicit PagesEnd(View& view) : view_(view) {}
@@ -79,8 +79,8 @@ int participant_of(const StudyRunOptionsGiven& given) {
   return number;
 }
 
-/// Returns the participant's file. @throws InputError: they have begun and are not to be resumed,
-/// or the other way round; there can be no such folder.
+/// Returns the participant's file. @throws InputError: the participant has begun but --resume is
+/// not given, or the other way round; the folder cannot be made.
 std::string file_of(const StudyRunOptionsGiven& given, int participant) {
   if (given.rehearse && *given.rehearse < 0)
     throw InputError(fmt::format("--rehearse {} must be 0 or more trials", *given.rehearse));
@@ -97,8 +97,8 @@ std::string file_of(const StudyRunOptionsGiven& given, int participant) {
   const bool begun = std::filesystem::exists(path) && !std::filesystem::is_empty(path);
   if (begun && !given.resume) {
     throw InputError(
-        fmt::format("participant {} has begun ({}); give a new one another number, or --resume to "
-                    "go on with this one",
+        fmt::format("participant {} has begun ({}); use another number for a new one, or --resume "
+                    "to continue with this one",
                     participant, path));
   }
   if (!begun && given.resume) {
@@ -108,8 +108,8 @@ std::string file_of(const StudyRunOptionsGiven& given, int participant) {
   return path;
 }
 
-/// Those who have a file in the folder, or have rehearsed. Files that cannot be read are left out:
-/// they must not stop another participant.
+/// Returns all who have a file in the folder, or have rehearsed. Files that cannot be read are
+/// ignored: they must not stop another participant.
 std::vector<RosterEntry> roster_of(const StudyRunOptionsGiven& given) {
   std::vector<std::string> faults;
   auto roster = read_roster(response_files_in(given.folder), &faults);
@@ -118,18 +118,19 @@ std::vector<RosterEntry> roster_of(const StudyRunOptionsGiven& given) {
   return roster;
 }
 
-/// The place that this participant takes from another, if any.
-/// @throws InputError: the participant has another file; nobody has the place, it was taken before,
-/// or belongs to another protocol.
+/// Returns the participant whom this one replaces, if any.
+/// @throws InputError: the participant has another file; the one to replace does not exist, was
+/// replaced before, or belongs to another protocol.
 std::optional<Replacement> replacement_for(const StudyRunOptionsGiven& given, int participant,
                                            const std::string& path, const Protocol& protocol) {
   const std::vector<RosterEntry> roster = roster_of(given);
   const RosterEntry* self = find_participant(roster, std::to_string(participant));
   if (self != nullptr && self->file != path) {
-    throw InputError(fmt::format(
-        "participant {} has begun in {}; give the new one another number, or rename that file to "
-        "{} to go on with it",
-        participant, self->file, path));
+    throw InputError(
+        fmt::format("participant {} has begun in {}; use another number for the new one, or rename "
+                    "that file to "
+                    "{} to continue with it",
+                    participant, self->file, path));
   }
   if (self != nullptr && (given.replaces.empty() || study::spelling_key(given.replaces) ==
                                                         study::spelling_key(self->replaces))) {
@@ -155,8 +156,8 @@ std::optional<Replacement> replacement_for(const StudyRunOptionsGiven& given, in
   }
   if (replaced->protocol != protocol_json(protocol)) {
     throw InputError(
-        fmt::format("participant {} had another protocol than {}, so their place is "
-                    "not of this study",
+        fmt::format("participant {} had another protocol than {}, so their place does "
+                    "not belong to this study",
                     replaced->participant, given.protocol));
   }
   return Replacement{replaced->participant, replaced->order};
@@ -168,8 +169,8 @@ std::optional<Rehearsal> rehearsal_of(const StudyRunOptionsGiven& given, int par
                    static_cast<std::uint64_t>(participant));
 }
 
-/// Starts the pages. Where that fails nobody has begun. @param begun the file that has just been
-/// begun, if any.
+/// Starts the pages. If that fails, the participant has not begun. @param begun the file that was
+/// just created, if any.
 StudyView& serve(const StudyRunOptionsGiven& given, Pipeline& pipeline, StudySession& session,
                  MarkerSender& markers, View& view, const std::string& begun) {
   try {
@@ -181,7 +182,7 @@ StudyView& serve(const StudyRunOptionsGiven& given, Pipeline& pipeline, StudySes
   }
 }
 
-/// Those that the study's thread has not written down before it ended.
+/// Writes the markers that the study's thread did not write before it ended.
 void write_rest(MarkerSender& markers, StudySession& session) {
   markers.stop();
   tell_news(markers);
@@ -189,7 +190,7 @@ void write_rest(MarkerSender& markers, StudySession& session) {
   while (markers.next(marker)) session.note(markers.line(marker), study_time());
 }
 
-/// How often a participant's file was gone on with, and 1.
+/// Returns the number of runs in a participant's file: 1, plus one for each time it was resumed.
 int run_of(const ResponseFile& file) {
   const auto& lines = file.lines();
   return 1 + static_cast<int>(std::count_if(lines.begin(), lines.end(), [](const ResponseLine& l) {
@@ -197,7 +198,7 @@ int run_of(const ResponseFile& file) {
          }));
 }
 
-/// Says how long after their samples the markers of a run were sent.
+/// Prints how long after their samples the markers of a run were sent.
 void tell_delays(std::FILE* out, const ResponseFile& file, int run) {
   Distribution begins, ends;
   for (const ResponseLine& line : file.lines()) {
@@ -251,7 +252,8 @@ void report(std::FILE* out, const StudySession& session, const ResponseFile& fil
 
 int study_run_command(const StudyRunOptionsGiven& given) {
   if (given.run.hand == "page")
-    throw InputError("--hand page is moved on the page of a run, and those of a study have none");
+    throw InputError(
+        "--hand page needs the page of a run; the pages of a study cannot move a hand");
   PipelineSettings base = study_settings(given.run.common);
   settle_hand(given.run.hand, given.run.hand_size, base);
   check_mode(base, RunMode::RealTime);
@@ -287,7 +289,8 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   if (file.found_cut_off())
     fmt::print("The last line of {0} was cut off; it is in {0}.cut-off.\n", path);
   if (!names_tracker(given.run.hand))
-    fmt::print("The hand is not tracked (--hand {}): good for a rehearsal.\n", given.run.hand);
+    fmt::print("The hand is not tracked (--hand {}): suitable for rehearsals only.\n",
+               given.run.hand);
   std::fflush(stdout);
   Observer observer(view, study, markers, interrupt);
   RunOptions options;
@@ -301,7 +304,7 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   report(stdout, session, file, summary);
   if (!given.markers.empty()) tell_delays(stdout, file, run_of(file));
   if (!unwritten.empty()) {
-    throw InputError(fmt::format("{}; answers that are lost: {}; go on with --resume", unwritten,
+    throw InputError(fmt::format("{}; lost answers: {}; continue with --resume", unwritten,
                                  answers_in(session.unwritten())));
   }
   if (interrupt.requested()) return interrupt.status();

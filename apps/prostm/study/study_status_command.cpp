@@ -56,7 +56,7 @@ void print_participants(std::FILE* out, const StudyStatus& study) {
   }
 }
 
-/// Says which numbers come next, and whose places can be taken.
+/// Prints which numbers come next, and which participants can be replaced.
 void print_next(std::FILE* out, const StudyStatus& study) {
   std::vector<int> open;
   for (const GroupStatus& g : study.groups) open.insert(open.end(), g.open.begin(), g.open.end());

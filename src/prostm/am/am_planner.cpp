@@ -19,13 +19,14 @@ using namespace planning;
 
 namespace {
 
-// share of the highest pressure; less counts as 0, so that means keep clear of the smallest doubles
+// share of the highest pressure below which pressure counts as 0, so that weighted means do not
+// underflow
 constexpr double kLeastShare = 1e-12;
 
 using Places = boost::container::static_vector<Vec2, kMaxPaths>;
 
-/// (B1): picks the cells of highest pressure that lie farther than `apart` from each other, one
-/// after another; of equal ones the first in the raster. Picks fewer than `count` if no more fit.
+/// (B1): repeatedly picks the cell of highest pressure that lies farther than `apart` from all
+/// picked ones; ties go to the first in the raster. Picks fewer than `count` if no cell is left.
 /// @param maximum the target's largest pressure.
 Places greedy_start(const TargetField& target, int count, double apart, double maximum) {
   Places places;
@@ -56,7 +57,7 @@ void list(Settings& s, Visitor& v) {
   v.field({"lloyd_iterations", "", 1, 1'000'000, "largest number of iterations of the k-means"},
           s.lloyd_iterations);
   v.field({"felt_weight", "", 0, 1,
-           "share that what is felt has in the choice of pressures and phases; 0: off"},
+           "weight of the percept when pressures and phases are chosen; 0: off"},
           s.felt_weight);
 }
 
@@ -88,7 +89,7 @@ struct AmPlanner::Scratch {
   AmSettings settings;
   std::size_t max_cells;
   WeightedKMeans kmeans;
-  std::unique_ptr<FeltFoci> felt;  // null if what is felt does not count
+  std::unique_ptr<FeltFoci> felt;  // null if felt_weight is 0
   Clusters clusters;
 };
 

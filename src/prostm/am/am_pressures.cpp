@@ -11,7 +11,7 @@ void set_pressures(const TargetField& target, double sigma, FocalPoints& foci) {
   constexpr double kReach = 5.0;  // [σ]
   const double reach2 = kReach * kReach * sigma * sigma, maximum = max_pressure(target);
   struct Sums {
-    double product = 0.0, square = 0.0;  // with p* over its maximum
+    double product = 0.0, square = 0.0;  // sums with p* relative to its maximum
     bool reaches = false;
   };
   std::array<Sums, kMaxPaths> sums;

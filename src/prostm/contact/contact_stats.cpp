@@ -18,7 +18,7 @@ constexpr std::array<Quantity<ContactStats>, 6> kStats{{
      .value = &ContactStats::skin_cells},
     {.name = "skin_area_cm2",
      .unit = "cm2",
-     .help = "Area of this skin, weighted by its fade, over all updates.",
+     .help = "Area of this skin, weighted by the fade of its pressure, over all updates.",
      .value = &ContactStats::skin_area,
      .scale = 1e4},
     {.name = "steep_cells",

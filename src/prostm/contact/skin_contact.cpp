@@ -12,19 +12,19 @@ namespace {
 constexpr double kPalmReach = 0.05;             // ℓ of (C1) [m]
 constexpr double kLeastCosine = 1e-3;           // visible skin faces the array, up to rounding
 constexpr double kFadeFrom = 40 * kPi / 180.0;  // angle at which the fade (C6) begins [rad]
-constexpr double kFadeTo = 62 * kPi / 180.0;    // angle at which nothing is left [rad]
-// a crossing is at most this far from the skin itself: √3/2, the error of trilinear values, and a
-// step [cells]
+constexpr double kFadeTo = 62 * kPi / 180.0;    // angle at which the fade (C6) reaches 0 [rad]
+// upper bound of the distance of a crossing from the skin: √3/2, the error of trilinear values, and
+// a step [cells]
 constexpr double kNearSkin = 1.5;
 
-/// Weight of visible skin in the fit (C1).
+/// Returns the weight of visible skin in the fit (C1).
 double plane_weight(double normal_z) {
   const double square = std::pow(std::max(normal_z, kLeastCosine), 2);
   return square * square;
 }
 
-/// Returns the slope of the palm's plane, folded: as steep as the palm up to 45°, then falling to
-/// level towards 90°, where the palm's other side takes over. Continuous in the pose.
+/// Returns the slope of the palm's plane, folded: that of the palm up to 45°, then decreasing to 0
+/// at 90°, where the other side of the hand starts to face the array. Continuous in the pose.
 Vec2 palm_slope(const Hand& hand) {
   const Vec3& wrist = hand.position[kWrist];
   const Vec3 across =
@@ -35,8 +35,8 @@ Vec2 palm_slope(const Hand& hand) {
   return -std::min(level / steep, steep / level) * downhill;
 }
 
-/// Returns the share of the pressure left on skin at an angle to the direction from the array,
-/// (C6).
+/// Returns the share of the pressure that remains on skin at an angle to the direction from the
+/// array, (C6). @param cosine cosine of the angle.
 double fade_of(double cosine) {
   const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
   return std::clamp((kFadeTo - angle) / (kFadeTo - kFadeFrom), 0.0, 1.0);
@@ -50,7 +50,7 @@ const PressureSource* part_named(std::string_view name, std::span<const NamedPre
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
-  // above 0, since only one part of a hand may be visible
+  // bounds above 0, since only one part of a hand may be visible
   v.field({"touch_palm", "", 0.001, 1000, "weight of the palm's skin"}, s.touch_palm);
   v.field({"touch_finger", "", 0.001, 1000, "weight of the fingers' skin"}, s.touch_finger);
   v.field({"touch_tip", "", 0.001, 1000, "weight of the fingertips' skin"}, s.touch_tip);
@@ -143,7 +143,7 @@ void SkinContact::find_visible() {
   }
 }
 
-/// Returns the mean and the unit normal towards +z, (C1).
+/// Returns the weighted mean and the unit normal towards +z, (C1).
 std::pair<Vec3, Vec3> SkinContact::fit_plane(std::span<const SeenSkin> visible,
                                              const Hand& hand) const {
   const double column = grid_.cell * grid_.cell;
@@ -176,8 +176,7 @@ bool SkinContact::place_patch(std::span<const SeenSkin> visible, const Hand& han
   patch.X_DP.translation() = anchor_ + normal * normal.dot(mean - anchor_);
   patch.X_DP.makeAffine();
 
-  // bounds of the visible skin, on multiples of the cell, with a margin that the slant of the rays
-  // needs
+  // bounds of the visible skin, on multiples of the cell, with a margin for the tilt of the rays
   Vec2 lower = Vec2::Constant(1e9), upper = Vec2::Constant(-1e9);
   const Pose X_PD = patch.X_DP.inverse();
   for (const SeenSkin& skin : visible) {
@@ -250,7 +249,7 @@ SkinContact::Cells SkinContact::press(const PressureSource& source, const HandSh
   return out;
 }
 
-/// Takes a part of the pressure at the points of press(), with its sign.
+/// Samples a part of the pressure at the points of press(), with its sign.
 void SkinContact::press_part(const PressureSource& part, const TargetField& patch,
                              std::vector<double>& out) {
   out.assign(patch.size(), 0.0);
@@ -259,8 +258,8 @@ void SkinContact::press_part(const PressureSource& part, const TargetField& patc
     out[pressed_[i].cell] = pressed_[i].fade * pressures_[i];
 }
 
-/// (C6). The mean of four points a quarter of a cell away in both directions, so that a finger's
-/// flanks do not come and go by whole cells.
+/// Returns (C6): the mean over four points a quarter of a cell away in both directions, so that the
+/// sides of a finger do not appear and disappear by whole cells.
 double SkinContact::fade_at(const Vec3& p_D, const TargetField& patch) const {
   double fade = 0.0;
   for (const double u : {-0.25, 0.25}) {
@@ -272,7 +271,7 @@ double SkinContact::fade_at(const Vec3& p_D, const TargetField& patch) const {
   return fade;
 }
 
-/// (C5)
+/// Returns (C5).
 double SkinContact::touch_at(const HandShape& shape, const Vec3& p_D) const {
   switch (shape.region(p_D)) {
     case SkinRegion::Tip:

@@ -1,5 +1,5 @@
 #pragma once
-/// From the pressure on the hands to target fields (the paper's section IV-A,
+/// Converts the pressure on the hands to target fields (the paper's section IV-A,
 /// docs/design/contact.md).
 
 #include <array>
@@ -19,10 +19,10 @@
 namespace prostm {
 
 struct ContactSettings {
-  // weight of an error on each part of the hand; used unless all three are the same
-  double touch_palm = 1.0;    ///< on the palm and the ball of the thumb
-  double touch_finger = 1.0;  ///< on all phalanges but the last
-  double touch_tip = 1.0;     ///< on the last phalanges
+  // weights of errors on the parts of the hand; without effect if all three are the same
+  double touch_palm = 1.0;    ///< weight on the palm and the ball of the thumb
+  double touch_finger = 1.0;  ///< weight on all phalanges but the last
+  double touch_tip = 1.0;     ///< weight on the last phalanges
 
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
@@ -31,11 +31,11 @@ struct ContactSettings {
 
 struct ContactStats {
   std::int64_t skin_cells = 0;   ///< raster cells with skin, over all patches
-  double skin_area = 0.0;        ///< of these, each counted as it has faded [m²]
-  std::int64_t steep_cells = 0;  ///< cells whose skin is too steep for the array: no target's
-  std::int64_t joints = 0;       ///< of the hands
-  std::int64_t joints_outside =
-      0;  ///< joints that lie outside the grid: no pressure is known there
+  double skin_area = 0.0;        ///< area of these, weighted by the fade (C6) [m²]
+  std::int64_t steep_cells = 0;  ///< cells without target, whose skin is too steep for the array
+  std::int64_t joints = 0;       ///< joints of the hands
+  /// joints outside the grid, where no pressure is known
+  std::int64_t joints_outside = 0;
 };
 /// Share of the skin's cells that are too steep; 0 without skin.
 double steep_share(const ContactStats& stats);
@@ -46,26 +46,27 @@ std::span<const Quantity<ContactStats>> quantities<ContactStats>();
 ///
 /// The skin that is visible from the array is found by marching each column of the grid from the
 /// array's side to the first crossing of the hand's signed distance. A plane is fitted to these
-/// points by least squares without regard to pressure, steep skin counting little (C1), with its
-/// axes and origin fixed so that they neither flip nor wander (C2). Each raster cell then marches
-/// along the plane's normal to the skin nearest to the array (C3), keeps its height, and takes the
-/// source's pressure there, clamped at 0 (C4). The pressure fades to nothing as the skin gets too
-/// steep for the array to press on (C6); steeper skin, and skin outside the box, has no target.
-/// Everything is continuous in the hand's pose and independent of earlier poses. If the settings
-/// touch_* differ, the patches have weights (C5).
+/// points by least squares, independently of the pressure and with low weights for steep skin (C1);
+/// its axes and origin are chosen such that they neither flip nor drift (C2). From each raster cell
+/// a ray marches along the plane's normal to the skin nearest to the array (C3); the cell gets its
+/// height, and the source's pressure there, clamped at 0 (C4). The pressure fades to 0 as the skin
+/// becomes too steep for the array to press on (C6); steeper skin, and skin outside the box, has no
+/// target. The result is continuous in the hand's pose and independent of earlier poses. If the
+/// settings touch_* differ, the patches have weights (C5).
 class SkinContact {
  public:
   /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
   SkinContact(const ContactSettings& settings, const GridShape& grid);
 
-  /// Size of the largest raster that extract() makes [cells].
+  /// Maximum number of cells of a patch of extract().
   std::size_t max_cells() const {
     return static_cast<std::size_t>(max_side_) * static_cast<std::size_t>(max_side_);
   }
 
-  /// @param raster the hands of `hands` on the constructor's grid, whose corner may have moved by
-  /// whole cells.  @param hands in frame D; `out` takes over their time.  @param parts of the
-  /// source. Patches keep those named smoke and movement, if both are there.
+  /// Computes the patches of a hand frame. @param raster the hands of `hands` on the constructor's
+  /// grid, whose corner may have moved by whole cells.  @param hands in frame D; `out` gets their
+  /// time.  @param parts parts of the source's pressure. Patches contain those named smoke and
+  /// movement, if both are given.
   ContactStats extract(const PressureSource& source, const HandRaster& raster,
                        const HandFrame& hands, TargetFrame& out,
                        std::span<const NamedPressure> parts = {}) noexcept;
@@ -95,14 +96,14 @@ class SkinContact {
   ContactSettings settings_;
   bool has_weights_;  // whether patches get weights
   GridShape grid_;
-  Vec3 anchor_;  // the corner of the constructor's grid, which stays
+  Vec3 anchor_;  // the corner of the constructor's grid; does not move with the raster's
   int max_side_;
   boost::container::static_vector<HandShape, 2> shapes_;
   SkinRays rays_;
   SkinOwner owner_;
   std::array<std::vector<SeenSkin>, 2> visible_;  // skin of each hand seen from the array
   std::vector<std::uint32_t> queue_;              // scratch of fill_heights
-  // cells that can be pressed on, and their positions
+  // cells that the array can press on, and their positions
   std::vector<Pressed> pressed_;
   std::vector<Vec3> points_;
   std::vector<double> pressures_;

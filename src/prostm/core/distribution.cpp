@@ -19,7 +19,7 @@ Distribution::Distribution(std::size_t capacity) : capacity_(std::max<std::size_
 }
 
 void Distribution::add(double value) noexcept {
-  // Welford's update: exact enough over millions of values
+  // Welford's update: accurate over millions of values
   max_ = count_ == 0 ? value : std::max(max_, value);
   const double delta = value - mean_;
   mean_ += delta / static_cast<double>(count_ + 1);

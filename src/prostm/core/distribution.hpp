@@ -6,8 +6,8 @@
 
 namespace prostm {
 
-/// Returns the least value that `share` of all values do not exceed (nearest-rank rule); 0 if
-/// empty.
+/// Returns the smallest value that a share `share` of the values does not exceed (nearest-rank
+/// rule); 0 if empty.
 double quantile(std::vector<double> values, double share);
 
 struct Summary {
@@ -17,8 +17,8 @@ struct Summary {
 };
 
 /// Collects values; add() never allocates. When the storage is full, every second kept value is
-/// dropped, and from then on only every second new value is kept (and so on). Quantiles stay those
-/// of an even sample in time; n, mean, deviation and max stay exact.
+/// dropped, and from then on only every second new value is kept (and so on). Quantiles are then
+/// those of a sample evenly spaced in time; n, mean, deviation and max stay exact.
 class Distribution {
  public:
   explicit Distribution(std::size_t capacity = 1 << 16);

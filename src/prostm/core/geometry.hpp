@@ -16,14 +16,13 @@ using Vec3 = Eigen::Vector3d;
 using Quat = Eigen::Quaterniond;
 using Pose = Eigen::Isometry3d;  ///< X_AB maps coordinates in B to coordinates in A.
 
-/// Twice the signed area of (a, b), > 0 when b is counter-clockwise of a.
+/// 2-D cross product a × b, > 0 if b is counter-clockwise from a.
 inline double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
 /// An axis-aligned grid of cubic cells in frame D; cell (i, j, k) spans origin + h·[i, i+1] × [j,
-/// j+1] × [k, k+1]. Linear index = (k·ny + j)·nx + i: x is fastest, z is the direction out of the
-/// array.
+/// j+1] × [k, k+1]. Linear index = (k·ny + j)·nx + i: x is fastest, z points out of the array.
 struct GridShape {
   int nx = 0, ny = 0, nz = 0;  ///< cells along x, y, z
   double cell = 0.0;           ///< edge of a cell h [m]
@@ -60,7 +59,7 @@ struct GridShape {
 /// Whole cells along x, y and z.
 using CellShift = std::array<int, 3>;
 
-/// The cells by which a vector goes, rounded.
+/// A vector in whole cells, rounded.
 inline CellShift whole_cells(const Vec3& vector, double cell) {
   CellShift cells;
   for (int a = 0; a < 3; ++a)

@@ -1,12 +1,12 @@
 #pragma once
-/// Bad input from outside: a file, an option, a value.
+/// Invalid input: a file, an option, a value.
 
 #include <stdexcept>
 
 namespace prostm {
 
-/// what() says in one sentence what was wrong, where, and what would be right. The command line
-/// prints it and exits 2.
+/// what() is one sentence with the problem, its place and the remedy. The command line prints it
+/// and exits with status 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

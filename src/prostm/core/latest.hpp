@@ -8,9 +8,9 @@
 
 namespace prostm {
 
-/// Three slots rotate: the writer owns one, the reader owns one, and the third waits in `middle_`
-/// with a flag that says whether it is newer than the reader's. A value skipped by the reader is
-/// overwritten.
+/// Three slots rotate: the writer owns one, the reader owns one, and the index of the third is in
+/// `middle_` with a flag that tells whether it is newer than the reader's. A value skipped by the
+/// reader is overwritten.
 template <class T>
 class Latest {
  public:
@@ -27,14 +27,15 @@ class Latest {
         middle_.exchange(static_cast<std::uint8_t>(writer_ | kFresh), std::memory_order_acq_rel);
     writer_ = old & kIndex;
   }
-  /// Takes the newest value if one came since the last call; true if so. Reader's thread only.
+  /// Takes the newest value if one was published since the last call; true if so. Reader's thread
+  /// only.
   bool refresh() {
     if ((middle_.load(std::memory_order_relaxed) & kFresh) == 0) return false;
     const std::uint8_t old = middle_.exchange(reader_, std::memory_order_acq_rel);
     reader_ = old & kIndex;
     return true;
   }
-  /// The value that the last refresh() took. Reader's thread only.
+  /// The value taken by the last refresh(). Reader's thread only.
   const T& value() const { return slots_[reader_]; }
   T& value() { return slots_[reader_]; }
 

@@ -1,6 +1,5 @@
 #pragma once
-/// The memory of L-BFGS [P-5]: the last steps of a descent, and the direction that follows from
-/// them.
+/// The memory of L-BFGS [P-5]: the last steps of a descent, and the resulting direction.
 
 #include <algorithm>
 #include <array>
@@ -8,7 +7,7 @@
 
 namespace prostm {
 
-/// Allocates nothing but what its vectors do.
+/// Allocates only within its vectors.
 ///
 /// Operations on vectors are given by an object with
 ///   float dot(const Vector& a, const Vector& b)
@@ -19,7 +18,7 @@ template <class Vector, std::size_t kSteps>
 class LbfgsMemory {
  public:
   LbfgsMemory() = default;
-  /// @param zero every vector to begin with.
+  /// @param zero initial value of every vector.
   explicit LbfgsMemory(const Vector& zero) {
     step_.fill(zero);
     change_.fill(zero);
@@ -31,11 +30,13 @@ class LbfgsMemory {
     scale_ = 1.0F;
   }
 
-  /// Room for a step, and for the change of the gradient over it, before keep().
+  /// Slots for the next step and the change of the gradient over it, to be filled before keep().
   Vector& step() { return step_[spare_]; }
   Vector& change() { return change_[spare_]; }
-  /// Keeps them; the oldest step makes room. @param curvature step · change, > 0. @param scale of
-  /// the preconditioner: step · change over change · (preconditioned change).
+  /// Keeps the filled slots, discarding the oldest step if full. @param curvature step · change, >
+  /// 0.
+  /// @param scale factor of the preconditioner: step · change over change · (preconditioned
+  /// change).
   void keep(float curvature, float scale) {
     inverse_curvature_[spare_] = 1.0F / curvature;
     scale_ = scale;

@@ -2,8 +2,8 @@
 
 namespace prostm {
 
-// The standard gives dB/m with the rounded factor 8.686 before the sum; without it the sum is in
-// Np/m.
+// The standard gives dB/m, with the rounded factor 8.686 before the sum; without the factor the sum
+// is in Np/m.
 double Medium::absorption(double frequency) const {
   constexpr double kReferenceTemperature = 293.15, kTriplePoint = 273.16;  // [K]
   constexpr double kReferencePressure = 101325.0;                          // [Pa]

@@ -19,10 +19,10 @@ struct Medium {
   /// ρ = p M / (R T) [kg/m³], 1.204 kg/m³ at 20 °C.
   double density() const { return pressure * kMolarMass / (kGasConstant * temperature); }
 
-  /// Attenuation α of a pure tone [Np/m], by which amplitude falls as e^{−αr}: ISO 9613-1, (M3) to
-  /// (M5); 0.152 Np/m at 40 kHz, 20 °C and a humidity of 50 %. @pre frequency > 0 [Hz].
+  /// Attenuation α of a pure tone [Np/m], amplitude falls as e^{−αr}: ISO 9613-1, (M3) to (M5);
+  /// 0.152 Np/m at 40 kHz, 20 °C and a humidity of 50 %. @pre frequency > 0 [Hz].
   double absorption(double frequency) const;
-  /// The same in dB/m, 20 lg e = 8.686 times as much.
+  /// Attenuation in dB/m: α times 20 lg e = 8.686.
   double absorption_db(double frequency) const;
 
   static constexpr double kHeatRatio = 1.4;

@@ -1,6 +1,6 @@
 #pragma once
-/// One list of a result's numbers, from which they are written, drawn, shown and merged. A new
-/// number needs one line in the list and its computation.
+/// Lists of the numbers in a result, from which they are written, drawn, shown and merged. A new
+/// number needs only one line in the list and its computation.
 
 #include <algorithm>
 #include <cstdint>
@@ -22,14 +22,14 @@ struct Quantity {
   using Member = std::variant<double S::*, std::int64_t S::*, int S::*, double (*)(const S&),
                               std::int64_t (*)(const S&)>;
   const char* name;  ///< in files and in Python
-  const char* unit;  ///< in files; empty for a plain number
+  const char* unit;  ///< in files; empty if dimensionless
   const char* help;
   Member value;  ///< the member, or a function of the members
   Better better = Better::Neither;
   Merge merge = Merge::Sum;
-  double scale = 1.0;      ///< value in files over value in SI, 1e3 for ms
+  double scale = 1.0;      ///< factor from SI to the unit in files, e.g. 1e3 for ms
   const char* group = "";  ///< JSON object that holds it; empty: the document
-  bool optional = false;   ///< NaN, and left out of files, unless requested
+  bool optional = false;   ///< NaN, and omitted from files, unless requested
   const char* label = "";  ///< column heading in tables and figures; empty: no column
 };
 
@@ -37,7 +37,7 @@ struct Quantity {
 template <class S>
 std::span<const Quantity<S>> quantities();
 
-/// Calls `use` with the number itself, in SI: a double or a std::int64_t.
+/// Calls `use` with the number in SI, as a double or a std::int64_t.
 template <class S, class Use>
 decltype(auto) visit_value(const Quantity<S>& quantity, const S& s, const Use& use) {
   return std::visit(
@@ -59,7 +59,8 @@ double value_of(const Quantity<S>& quantity, const S& s) {
   return visit_value(quantity, s, [](auto value) { return static_cast<double>(value); });
 }
 
-/// Merges `more`, the later part, into `sum`. Computed numbers follow from the merged members.
+/// Merges `more`, the later part, into `sum`. Computed numbers are not merged; they follow from the
+/// members.
 template <class S>
 void merge(const S& more, S& sum) {
   for (const Quantity<S>& quantity : quantities<S>()) {

@@ -1,6 +1,5 @@
 #pragma once
-/// Seeded random numbers that are the same on every platform (the distributions of `<random>` are
-/// not).
+/// Seeded random numbers, identical on every platform (unlike the distributions of `<random>`).
 
 #include <cmath>
 #include <cstddef>
@@ -22,13 +21,13 @@ class Random {
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Uniform integer in [0, n). @pre n > 0. The modulo bias is below n / 2^64.
   int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
-  /// Puts values into a random order (Fisher and Yates).
+  /// Shuffles values (Fisher and Yates).
   template <class Values>
   void shuffle(Values& values) {
     for (std::size_t i = values.size(); i > 1; --i)
       std::swap(values[i - 1], values[static_cast<std::size_t>(below(static_cast<int>(i)))]);
   }
-  /// Standard normal (Box-Muller, one value a call).
+  /// Standard normal (Box-Muller, one value per call).
   double normal() {
     const double u = 1.0 - uniform();  // in (0, 1], so that the logarithm is finite
     const double v = uniform();

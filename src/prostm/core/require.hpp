@@ -4,7 +4,7 @@
 namespace prostm {
 
 /// Returns when `value` is finite and low ≤ value ≤ high.
-/// @param unit stands after the numbers, e.g. "m/s"; empty for a plain number.
+/// @param unit printed after the numbers, e.g. "m/s"; empty if dimensionless.
 /// @throws std::invalid_argument "height = 1 m must be between 0.1 and 0.6 m".
 void require_between(const char* name, double value, double low, double high,
                      const char* unit = "");

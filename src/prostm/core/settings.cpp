@@ -38,7 +38,7 @@ class BoundsCheck : public SettingsReader {
   void choice(const Setting&, std::span<const std::string_view>, int) override {}
 };
 
-/// A text as TOML and JSON quote it.
+/// A text quoted as in TOML and JSON.
 std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {

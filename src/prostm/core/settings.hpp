@@ -1,10 +1,10 @@
 #pragma once
-/// How a stage's settings are listed once, and read, written, checked and documented from that one
+/// Settings of stages: each is listed once, and read, written, checked and documented from that
 /// list.
 ///
-/// Each `XxxSettings` has `visit()`, which names its fields in order with what they mean. Names in
-/// files are the names in C++, values are SI as in C++. Files, the command line and Python know
-/// settings through this interface alone.
+/// Each `XxxSettings` has `visit()`, which lists its fields in order with their meanings. Names and
+/// values in files are those in C++, in SI. Files, the command line and Python access settings only
+/// through this interface.
 
 #include <functional>
 #include <limits>
@@ -22,14 +22,14 @@ namespace prostm {
 /// A field's description, without its value.
 struct Setting {
   const char* name;
-  const char* unit = "";  ///< "m/s"; empty for a plain number or no number
-  double least = -std::numeric_limits<double>::infinity();  ///< of a number, in its unit
+  const char* unit = "";  ///< "m/s"; empty if dimensionless or not a number
+  double least = -std::numeric_limits<double>::infinity();  ///< bounds of a number, in its unit
   double most = std::numeric_limits<double>::infinity();
   const char* help = "";    ///< one clause, without the unit and the bounds
-  bool names_file = false;  ///< of a text: the name of a file that is read, unless it is empty
+  bool names_file = false;  ///< for a text: the name of a file to read, if not empty
 };
 
-/// Sees every field and may change it.
+/// Visits every field and may change it.
 class SettingsWriter {
  public:
   virtual ~SettingsWriter() = default;
@@ -37,7 +37,7 @@ class SettingsWriter {
   virtual void field(const Setting& setting, int& value) = 0;
   virtual void field(const Setting& setting, bool& value) = 0;
   virtual void field(const Setting& setting, std::string& value) = 0;
-  /// One of several names, by its place.
+  /// Visits one of several names, by index.
   virtual void choice(const Setting& setting, std::span<const std::string_view> names,
                       int& index) = 0;
 
@@ -50,7 +50,7 @@ class SettingsWriter {
   }
 };
 
-/// Sees every field.
+/// Visits every field.
 class SettingsReader {
  public:
   virtual ~SettingsReader() = default;
@@ -75,10 +75,10 @@ using WriteSettings = std::function<void(SettingsWriter&)>;
 struct SettingsGroup {
   std::string name;
   ReadSettings read;
-  WriteSettings write;  ///< none of a group that is only to be read
+  WriteSettings write;  ///< empty for a read-only group
 };
 
-/// The settings of one struct, or of several under one name; they outlive it.
+/// Returns the settings of one or more structs under one name; they must outlive the group.
 template <class... Settings>
 SettingsGroup group_of(std::string name, Settings&... settings) {
   SettingsGroup group;
@@ -93,11 +93,11 @@ SettingsGroup group_of(std::string name, Settings&... settings) {
 /// The bounds of a number in words, with its unit: "0.1 to 100 m/s", "at least 0", or nothing.
 std::string bounds_text(const Setting& setting);
 
-/// A setting as it is listed.
+/// A row in a list of settings.
 struct SettingRow {
   Setting setting;
-  const char* type;   ///< of its value in a settings file: float, integer, boolean or string
-  std::string value;  ///< as a settings file has it: 0.0086, 4, true, "best"
+  const char* type;   ///< type of its value in a settings file: float, integer, boolean or string
+  std::string value;  ///< as in a settings file: 0.0086, 4, true, "best"
   std::string
       bounds;  ///< "0.1 to 100 m/s", "true or false", "best, fast or paper"; empty for a text
   std::vector<std::string_view> choices = {};  ///< all values of a choice, empty for other settings
@@ -105,18 +105,18 @@ struct SettingRow {
 /// Every setting, in order.
 std::vector<SettingRow> setting_rows(const ReadSettings& settings);
 
-/// A setting that names a file which is read.
+/// A setting that names a file to read.
 struct SettingFile {
   std::string setting, path;
 };
-/// Those that are not empty, in order.
+/// Returns the non-empty ones, in order.
 std::vector<SettingFile> files_of(const ReadSettings& settings);
 
 /// Checks a number against the setting's bounds. @throws std::invalid_argument with the sentence of
 /// require_between().
 void require_bounds(const Setting& setting, double value);
 void require_bounds(const Setting& setting, int value);
-/// Checks every number. @throws std::invalid_argument about the first that is out of its bounds.
+/// Checks every number. @throws std::invalid_argument for the first that is out of bounds.
 void require_bounds(const ReadSettings& settings);
 template <class Settings>
 void require_bounds(const Settings& settings) {

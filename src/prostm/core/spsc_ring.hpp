@@ -12,7 +12,7 @@ namespace prostm {
 template <class T>
 class SpscRing {
  public:
-  /// @param capacity values that fit, >= 1. @throws std::invalid_argument.
+  /// @param capacity number of values, ≥ 1. @throws std::invalid_argument.
   explicit SpscRing(std::size_t capacity) : slots_(capacity + 1) {
     if (capacity == 0)
       throw std::invalid_argument("the capacity of a ring is 0; it must be at least 1");
@@ -30,8 +30,7 @@ class SpscRing {
     commit();
     return true;
   }
-  /// The slot that commit() would make visible, to be filled in place; nullptr when full. Writer's
-  /// thread only.
+  /// The slot to fill in place before commit(); nullptr when full. Writer's thread only.
   T* back() {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     return next(head) == tail_.load(std::memory_order_acquire) ? nullptr : &slots_[head];

@@ -1,5 +1,5 @@
 #pragma once
-/// The only clock of the stages: the current time, and the time that work takes.
+/// The clock of all stages: the current time, and the duration of work.
 
 #include <chrono>
 
@@ -30,7 +30,7 @@ class StageTimer {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// A moment on a timer; without a timer it never passes.
+/// A time on a timer; without a timer it never passes.
 struct Deadline {
   const StageTimer* timer = nullptr;
   double at = 0.0;  ///< [s]

@@ -45,7 +45,7 @@ void WorkerPool::run_erased(int n, Call call, void* context) {
     for (int i = 0; i < n; ++i) call(context, i);
     return;
   }
-  // publish the region; pending_ first, since the tickets let workers in
+  // publish the region; pending_ first, since workers start as soon as they see the tickets
   const std::uint64_t region = (region_.load(std::memory_order_relaxed) + 1) & kRegionMask;
   call_.store(call, std::memory_order_relaxed);
   context_.store(context, std::memory_order_relaxed);
@@ -64,7 +64,8 @@ void WorkerPool::run_erased(int n, Call call, void* context) {
 
   drain(region, 0);
 
-  // wait for what the workers took; they are running, so this is short unless one lost its core
+  // wait for the indices taken by workers; they are running, so this is short unless one was
+  // preempted
   for (int spins = 0; pending_.load(std::memory_order_acquire) != 0;) {
     if (spins < kSpins) {
       relax();
@@ -91,7 +92,7 @@ void WorkerPool::drain(std::uint64_t region, std::size_t self) {
       seen = ticket.load(std::memory_order_acquire);
     }
   }
-  // once, because all threads write here
+  // only once, because all threads write here
   if (done > 0) pending_.fetch_sub(done, std::memory_order_acq_rel);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// A small pool for few, short parallel regions, with bounded spinning.
+/// A small thread pool for short parallel regions, with bounded spinning.
 
 #include <atomic>
 #include <condition_variable>
@@ -13,17 +13,16 @@ namespace prostm {
 
 /// `run(n, f)` calls f(0) … f(n−1), each once, on the caller and `threads − 1` workers, and returns
 /// when all are done. Each thread begins with its own part of the indices, the same one in every
-/// region, so that it finds in its cache what it wrote in the last one; then it helps the others.
-/// So which thread runs which index is not fixed, and f must write to places that depend on the
-/// index alone; then results do not depend on the number of threads. One region at a time, from one
-/// thread; regions do not nest.
+/// region, to reuse the data in its cache; then it helps the others. So the thread of an index is
+/// not fixed. If f writes only to places that depend on the index alone, results do not depend on
+/// the number of threads. Only one thread may start regions, one at a time; regions do not nest.
 ///
 /// A worker spins for a bounded time after a region (the next one usually follows at once), then
-/// sleeps: a machine with more runnable threads than cores never waits for a spinning one longer
-/// than that bound.
+/// sleeps: on a machine with more runnable threads than cores, no thread waits for a spinning one
+/// longer than that bound.
 class WorkerPool {
  public:
-  /// @param threads total number, the caller included; 1 runs everything on the caller. @throws
+  /// @param threads total number, including the caller; 1 runs everything on the caller. @throws
   /// std::invalid_argument if < 1.
   explicit WorkerPool(int threads);
   ~WorkerPool();
@@ -32,7 +31,7 @@ class WorkerPool {
 
   int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
-  /// @pre n < 2^20; f does not throw. Allocates nothing.
+  /// @pre n < 2^20; f does not throw. Does not allocate.
   template <class F>
   void run(int n, F&& f) {
     using Function = std::remove_reference_t<F>;
@@ -47,7 +46,7 @@ class WorkerPool {
   void work(const std::stop_token& stop, std::size_t self);
   void drain(std::uint64_t region, std::size_t self);
 
-  // A thread's part of a region is handed out from one word: region number (24 bits), end (20),
+  // Each thread's part of a region is distributed from one word: region number (24 bits), end (20),
   // next index (20). A worker that wakes late compares the whole word, so it can never take an
   // index of another region.
   struct alignas(64) Part {

@@ -20,34 +20,35 @@ struct DeviceInfo {
   bool intensity_per_focus = false;  ///< false: one intensity for all foci of a sample
   bool streams = false;              ///< pulls an endless stream
   bool loads_segments = false;       ///< plays segments that are loaded whole
-  bool keeps_time = true;            ///< plays at its own times; false: when pull() is called
+  bool keeps_time = true;            ///< paced by a clock of its own; false: by calls of pull()
   int decimation = 1;                ///< samples of an emission per sample of the device
-  double place_unit = 0.0;           ///< unit that places are rounded to [m]; 0: none
-  bool comes_back = false;           ///< plays on by itself after it was Vanished for a while
+  double place_unit = 0.0;           ///< resolution of positions [m]; 0: they are not rounded
+  bool comes_back = false;           ///< resumes by itself after the status was Vanished
 
-  /// Rate of the samples that an emission makes for it [Hz].
+  /// Sample rate of an emission for this device [Hz].
   double emission_rate() const { return sample_rate * decimation; }
-  /// Speed of a focal point that is at most kMaxFocusSpeed once places are rounded: rounding both
-  /// ends of a step lengthens it by at most the diagonal of a unit [m/s].
+  /// Largest speed of a focal point that stays within kMaxFocusSpeed after positions are rounded
+  /// [m/s]: rounding both ends of a step lengthens it by at most the diagonal of a cube of side
+  /// place_unit.
   double max_focus_speed() const;
   /// Length of a block [s].
   double block_time() const { return block_samples / sample_rate; }
 };
 
-/// Result of a look for a device.
+/// Result of a search for a device.
 struct DeviceFinding {
   bool found = false;
-  std::string words;  ///< what is there; or what is missing and what to do, in one sentence
+  std::string words;  ///< one sentence: the device found, or what is missing and the remedy
 };
 
 struct DeviceStats {
   std::int64_t blocks = 0;         ///< blocks filled
   std::int64_t late_blocks = 0;    ///< blocks filled after their deadline
-  std::int64_t missed_blocks = 0;  ///< block times at which the queue had run dry
+  std::int64_t missed_blocks = 0;  ///< block periods in which the queue was empty: dropouts
   std::int64_t lost_links = 0;     ///< times that the link to the array was lost
   std::int64_t lost_blocks = 0;    ///< of missed_blocks, those while the link was lost
-  std::int64_t slow_blocks = 0;    ///< of missed_blocks, those that the link passed on too slowly
-  int queue_blocks = 0;            ///< depth of the queue now
+  std::int64_t slow_blocks = 0;    ///< of missed_blocks, those caused by a slow link
+  int queue_blocks = 0;            ///< current depth of the queue
 };
 
 template <>
@@ -57,23 +58,23 @@ enum class DeviceStatus : std::uint8_t {
   Idle,  ///< not started, or stopped
   Running,
   Refused,  ///< did not start or take a segment; see Device::problem
-  /// Gone while running: output has stopped. Call start() when it is back, unless DeviceInfo says
-  /// that it comes back by itself.
+  /// Lost while running; output has stopped. Call start() once the device is available again,
+  /// unless DeviceInfo::comes_back is set.
   Vanished
 };
 
-/// Samples that a device has played and remembers. Any thread.
+/// Samples that a device has played and kept. Any thread.
 class PlayedSamples {
  public:
   virtual ~PlayedSamples() = default;
   /// Returns samples first … first+n−1, sample-major. @throws std::out_of_range for samples that
-  /// are forgotten or not yet played.
+  /// are no longer kept or not yet played.
   virtual std::vector<FocusSample> read_back(std::int64_t first, std::int64_t n) const = 0;
 };
 
-/// A device plays an endless stream, from which it pulls blocks at its own times (start), or
-/// segments that are loaded whole and repeat until the next one (load_segment). One thread calls
-/// start, stop, load_segment and pull; any thread may call the rest.
+/// A device plays an endless stream, from which it pulls blocks at times of its own (start), or a
+/// segment that is loaded whole and repeats until the next one replaces it (load_segment). One
+/// thread calls start, stop, load_segment and pull; any thread may call the rest.
 class Device {
  public:
   virtual ~Device() = default;
@@ -95,16 +96,17 @@ class Device {
   virtual DeviceStats stats() const = 0;
   /// Samples of the stream that have left the array.
   virtual std::int64_t samples() const = 0;
-  /// Time when a sample leaves the array, in seconds of the steady clock; for a device that keeps
-  /// no time, since the first sample. @pre Running as a stream.
+  /// Time when a sample leaves the array [s], on the steady clock; for a device without a clock of
+  /// its own, since the first sample. @pre Running as a stream.
   virtual double play_time(std::int64_t sample) const = 0;
-  /// Time when the block of a sample was asked for, likewise: play_time less the queue before it.
+  /// Time when the block of a sample was requested [s], on the same clock: earlier than play_time
+  /// by the time that the block spends in the queue.
   virtual double ask_time(std::int64_t sample) const { return play_time(sample); }
-  /// Whether the hardware says that it is too hot. Any thread.
+  /// Whether the hardware reports that it is too hot. Any thread.
   virtual bool is_hot() const { return false; }
-  /// Says in a few words what was found out about it and what it costs: versions, rates, times.
+  /// Short description of the connected device: versions, rates, times, load of the link.
   virtual std::string description() const { return {}; }
-  /// The samples that it played; null if it does not remember them.
+  /// The samples that were played; null if the device does not keep them.
   virtual const PlayedSamples* played() const { return nullptr; }
 };
 

@@ -15,7 +15,7 @@
 namespace prostm {
 namespace {
 
-// A kind's row stands in the folder of the kind.
+// Each kind defines its row in its own folder.
 const DeviceKind kKinds[] = {simulated_kind(), autd3_kind(), autd3_sdk_kind(), ultraleap_kind(),
                              stream_kind()};
 

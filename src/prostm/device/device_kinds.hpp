@@ -11,10 +11,10 @@ namespace prostm {
 
 std::span<const DeviceKind> device_kinds();
 
-/// How --device names a kind: NAME, or NAME://ADDRESS with the form of its address.
+/// Syntax of a kind in --device: NAME, or NAME://ADDRESS with the form of its address.
 std::string form_of(const DeviceKind& kind);
 
-/// A device as --device names it: NAME, or NAME://ADDRESS.
+/// A device as given to --device: NAME, or NAME://ADDRESS.
 struct DeviceName {
   const DeviceKind* kind;
   std::string address;  ///< empty: none given
@@ -23,7 +23,7 @@ struct DeviceName {
 /// and for an address where the kind takes none.
 DeviceName device_named(const std::string& name);
 
-/// Makes a device that streams: one that only loads segments gets a SegmentStream.
+/// Makes a device that streams; one that only loads segments is wrapped in a SegmentStream.
 /// @param name as for device_named(). @throws as device_named() and the kind's make() do.
 std::unique_ptr<Device> make_device(const std::string& name, const DeviceSetup& setup);
 /// The same for a given device.

@@ -1,5 +1,5 @@
 #pragma once
-/// The settings of devices: an object of each type, which the kind of device that has it declares.
+/// Settings of devices: one object per type of settings, which a kind of device declares.
 
 #include <any>
 #include <map>
@@ -9,10 +9,10 @@
 
 namespace prostm {
 
-/// A value: copies are independent of each other. References stay valid as long as it lives.
+/// A value type: copies are independent. References stay valid for the object's lifetime.
 class DeviceSettings {
  public:
-  /// The settings of type S; before anything was set, its defaults.
+  /// The settings of type S, initially its defaults.
   template <class S>
   S& of() {
     std::any& held = held_[typeid(S)];
@@ -30,7 +30,7 @@ class DeviceSettings {
   std::map<std::type_index, std::any> held_;
 };
 
-/// A type of settings under its name in files.
+/// A type of settings and its name in files.
 struct DeviceSettingsGroup {
   const char* name;
   SettingsGroup (*change)(const char* name, DeviceSettings& all);
@@ -43,7 +43,7 @@ constexpr DeviceSettingsGroup device_settings_group(const char* name) {
           [](const char* n, const DeviceSettings& all) { return group_of(n, all.of<S>()); }};
 }
 
-/// The group in settings that outlive it, to change and to read alone.
+/// The group within `all`, which must outlive it: writable, and read-only.
 inline SettingsGroup group_of(const DeviceSettingsGroup& group, DeviceSettings& all) {
   return group.change(group.name, all);
 }

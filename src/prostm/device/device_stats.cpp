@@ -17,10 +17,11 @@ constexpr std::array<Quantity<DeviceStats>, 7> kStats{{
      .better = Better::Less},
     {.name = "missed_blocks",
      .unit = "",
-     .help = "Block times at which the queue had run dry.",
+     .help = "Dropouts: block periods in which the queue was empty.",
      .value = &DeviceStats::missed_blocks,
      .better = Better::Less},
-    // causes of missed blocks; soak tests count only what is better when less, and each block once
+    // Causes of missed blocks: soak tests count only numbers that are better when less, so that
+    // each block counts once
     {.name = "lost_links",
      .unit = "",
      .help = "Times that the link to the array was lost.",
@@ -31,11 +32,11 @@ constexpr std::array<Quantity<DeviceStats>, 7> kStats{{
      .value = &DeviceStats::lost_blocks},
     {.name = "slow_blocks",
      .unit = "",
-     .help = "Of missed_blocks, those that the link passed on too slowly.",
+     .help = "Of missed_blocks, those caused by a slow link.",
      .value = &DeviceStats::slow_blocks},
     {.name = "queue_blocks",
      .unit = "",
-     .help = "Depth of the queue now.",
+     .help = "Current depth of the queue.",
      .value = &DeviceStats::queue_blocks,
      .merge = Merge::Newest},
 }};

@@ -34,7 +34,7 @@ bool limit_allows(__rlimit_resource which, rlim_t wanted) {
 }
 #endif
 
-/// The remedy, with a line of the file of limits.
+/// Returns the remedy: the line to add to the file of limits.
 std::string allow(const char* line) {
   return std::string("write \"* - ") + line +
          "\" into /etc/security/limits.d/prostm.conf and log in again";
@@ -61,13 +61,13 @@ bool lock_memory() {
 
 std::string priority_sentence(bool is_allowed) {
   if (is_allowed) return "Real-time priority is allowed, and the array's thread takes it.";
-  return "Real-time priority is not allowed, so the queue must cover for other programs: " +
+  return "Real-time priority is not allowed, so the queue must absorb delays by other programs: " +
          allow("rtprio 10") + " (ulimit -r).";
 }
 
 std::string memory_sentence(bool is_allowed) {
-  if (is_allowed) return "Memory may be locked (--lock-memory), so that nothing waits for a disk.";
-  return "Memory may not be locked, so it may have to come back from a disk: " +
+  if (is_allowed) return "Memory may be locked (--lock-memory), so that it is never swapped out.";
+  return "Memory may not be locked, so it may be swapped out to disk: " +
          allow("memlock unlimited") + " (ulimit -l).";
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Whether the system lets a program keep time: real-time priority and locked memory.
+/// Permissions for real-time output: real-time priority and locked memory.
 
 #include <string>
 
@@ -9,15 +9,15 @@ struct RealtimeLimits {
   bool priority = false;  ///< raise_thread_priority() gets real-time scheduling
   bool memory = false;    ///< lock_memory() may lock everything
 };
-/// Looks at the limits and capabilities of this process; changes nothing.
+/// Reads the limits and capabilities of this process; changes nothing.
 RealtimeLimits realtime_limits();
 
-/// Keeps all memory of this process, present and future, from being swapped out, as it is touched.
-/// Does nothing where a limit stands in the way: with a limit, later memory could be refused.
+/// Locks all memory of this process, present and future, as it is touched, so that it is never
+/// swapped out. Does nothing under a limit, because later allocations could then fail.
 /// @return whether the memory is locked.
 bool lock_memory();
 
-/// One sentence each: whether it is allowed, and what to do where it is not.
+/// One sentence each: whether it is allowed, and the remedy if not.
 std::string priority_sentence(bool is_allowed);
 std::string memory_sentence(bool is_allowed);
 

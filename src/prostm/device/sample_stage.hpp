@@ -5,14 +5,14 @@
 
 namespace prostm {
 
-/// Passes on another source's samples, changed or looked at.
+/// Passes on the samples of another source, modified or inspected.
 class SampleStage : public SampleSource {
  public:
   int foci() const final { return from_->foci(); }
 
  protected:
   SampleSource& from() { return *from_; }
-  /// Sets the source of its samples. @pre nothing pulls.
+  /// Sets the source of its samples. @pre no thread is pulling.
   virtual void follow(SampleSource& from) { from_ = &from; }
 
  private:

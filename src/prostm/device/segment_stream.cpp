@@ -55,7 +55,7 @@ DeviceStatus SegmentStream::start(SampleSource& source) {
       clock_.emplace(SteadyClock::now(), std::chrono::round<BlockClock::Duration>(period), kQueue);
     }
   }
-  // the first block at once, so that a device that refuses says so here
+  // load the first block now, so that a refusal is reported here
   if (!load_block()) return DeviceStatus::Refused;
   if (info_.keeps_time) thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   return DeviceStatus::Running;
@@ -78,7 +78,7 @@ void SegmentStream::run(const std::stop_token& stop) {
   }
 }
 
-/// Loads the next block; false if the device does not take it.
+/// Loads the next block; false if the device refuses it.
 bool SegmentStream::load_block() {
   source_->fill(blocks_ * info_.block_samples, block_);
   if (device_->load_segment(block_, source_->foci()) != DeviceStatus::Running) return false;
@@ -103,7 +103,7 @@ void SegmentStream::stop() {
 }
 
 void SegmentStream::pull(int n) {
-  // the block loaded before plays, then the next one is loaded
+  // the loaded block plays, then the next one is loaded
   for (int k = 0; k < n; ++k) {
     device_->pull(1);
     if (!load_block()) {
@@ -125,7 +125,7 @@ DeviceStats SegmentStream::stats() const {
 
 std::int64_t SegmentStream::samples() const {
   const std::lock_guard lock(mutex_);
-  // the last block that was loaded is still to be played
+  // the block that was loaded last has not played yet
   std::int64_t played = std::max<std::int64_t>(0, stats_.blocks - 1);
   if (clock_) {
     const auto now = SteadyClock::now();

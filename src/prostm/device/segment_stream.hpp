@@ -1,5 +1,5 @@
 #pragma once
-/// Streams to a device that loads segments.
+/// A stream on a device that only loads segments.
 
 #include <atomic>
 #include <memory>
@@ -14,9 +14,9 @@
 namespace prostm {
 
 /// Fills blocks from the stream and loads each as the segment that plays next, while the one before
-/// it plays. In real time it does so on a thread of its own, by BlockClock; otherwise in pull(). A
-/// block that comes too late is counted: the device repeats the one before it meanwhile. A device
-/// that refuses a block while the stream plays counts as vanished.
+/// it plays. In real time it does so on a thread of its own, paced by BlockClock; otherwise in
+/// pull(). A late block is counted, and the device repeats the previous block until it arrives. A
+/// device that refuses a block while the stream plays counts as vanished.
 class SegmentStream final : public Device {
  public:
   /// @throws std::invalid_argument for a device that cannot load segments.

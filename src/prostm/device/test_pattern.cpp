@@ -12,11 +12,11 @@ namespace prostm {
 namespace {
 
 constexpr double kGentle = 0.2;    // share of the intensity at the beginning of a figure
-constexpr double kRampTime = 2.0;  // until all of it is there, at most [s]
-constexpr double kTouch = 200.0;   // modulation that skin feels best [Hz]
+constexpr double kRampTime = 2.0;  // time until full intensity, at most [s]
+constexpr double kTouch = 200.0;   // modulation to which skin is most sensitive [Hz]
 constexpr std::int64_t kOrders = 256;
 
-/// The figure of an order, −1: silence.
+/// Returns the index of an order's figure; −1: silence.
 std::int64_t figure_of(std::int64_t order) {
   return order % kOrders - 1;
 }
@@ -122,7 +122,7 @@ void TestPattern::fill(std::int64_t first, std::span<FocusSample> out) noexcept 
   if (playing_ == order && over_) finished_.store(order);
 }
 
-/// The next sample, when `order` is what was asked for last.
+/// Returns the next sample. @param order the newest request.
 FocusSample TestPattern::next(std::int64_t order) noexcept {
   if (faded_in_ == 0 && playing_ != order) {
     playing_ = order;

@@ -1,5 +1,5 @@
 #pragma once
-/// Figures of one focal point by which a hand can tell whether an array works.
+/// Test figures of one focal point, to check by hand whether an array works.
 
 #include <atomic>
 #include <cstdint>
@@ -18,13 +18,13 @@ struct TestFigure {
   TestShape shape = TestShape::Point;
   Vec3 centre = Vec3::Zero();  ///< in D [m]
   double radius = 0.0;  ///< of a circle, half of a line along x; both parallel to D's x and y [m]
-  double frequency = 0.0;   ///< rounds, or ways to and fro, a second [Hz]
-  double modulation = 0.0;  ///< of the intensity, between 0 and its full value [Hz]; 0: steady
+  double frequency = 0.0;   ///< rounds of a circle, or cycles along a line, per second [Hz]
+  double modulation = 0.0;  ///< frequency of the modulation from 0 to full intensity [Hz]; 0: none
   double seconds = 4.0;     ///< fades included
 
-  double speed() const;              ///< largest of the focal point [m/s]
+  double speed() const;              ///< largest speed of the focal point [m/s]
   Vec3 position(double t) const;     ///< [m], t since its beginning [s]
-  double intensity(double t) const;  ///< 0..1, gentle at first, without the fades
+  double intensity(double t) const;  ///< 0..1, with the ramp at its beginning, without the fades
 };
 
 /// Returns the figures for an array: a point that moves, a circle, and, where the array has several
@@ -33,9 +33,9 @@ struct TestFigure {
 std::vector<TestFigure> test_figures(const TransducerArray& array, double emission_rate,
                                      double height, double seconds);
 
-/// Plays one figure when it is told to, and silence otherwise. The intensity never changes faster
-/// than over its full range in 40 samples, and the focal point moves only while it may: by at most
-/// kMaxFocusSpeed where it sounds.
+/// Plays one figure on request, and silence otherwise. The intensity takes at least 40 samples to
+/// change over its full range, and the focal point moves at no more than kMaxFocusSpeed while its
+/// intensity is above 0.
 class TestPattern final : public SampleSource {
  public:
   /// @param emission_rate samples a second [Hz].  @param level largest intensity, 0..1.
@@ -47,11 +47,11 @@ class TestPattern final : public SampleSource {
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
 
   // ---- one other thread ----
-  /// Plays a figure, by its place, after the fade of what still sounds.
+  /// Plays the figure of this index, once the current one has faded out.
   void play(std::size_t figure) noexcept;
   /// Fades out.
   void silence() noexcept;
-  /// Whether all samples of what was asked for last are made, its fade included.
+  /// Whether the last request is complete: all its samples are made, the fade included.
   bool done() const noexcept { return finished_.load() == order_.load(); }
 
   static constexpr double kFade = 2e-3;  ///< time of a fade over the full range [s]
@@ -63,13 +63,13 @@ class TestPattern final : public SampleSource {
   const std::vector<TestFigure> figures_;
   const double rate_, level_;
   const int fade_samples_;
-  std::atomic<std::int64_t> order_{0}, finished_{0};  // 256 · count + place of the figure + 1
+  std::atomic<std::int64_t> order_{0}, finished_{0};  // 256 · count + index of the figure + 1
 
-  // of the thread that fills
+  // used by the thread that calls fill()
   std::int64_t playing_ = 0;  // order
   std::int64_t sample_ = 0;   // of the figure
   int faded_in_ = 0;          // 0..fade_samples_
-  bool over_ = true;          // what plays is silent, and stays so
+  bool over_ = true;          // only silence is left of the current order
   Vec3 last_ = Vec3::Zero();
 };
 

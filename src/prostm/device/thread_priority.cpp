@@ -16,7 +16,7 @@ namespace prostm {
 #if defined(__linux__)
 namespace {
 
-/// Asks the fair scheduler for short time slices, which bring an early turn after each wake-up.
+/// Asks the fair scheduler for short time slices, so that the thread runs soon after each wake-up.
 /// Needs no privilege; kernels before 6.12 ignore it.
 void ask_for_short_slices() noexcept {
   struct Attributes {  // the kernel's struct sched_attr, version 0

@@ -1,15 +1,15 @@
 #pragma once
-/// Asks the system to let a thread run on time.
+/// Raises the scheduling priority of a thread.
 
 namespace prostm {
 
-/// The priority of real-time scheduling: above ordinary threads, below what the system itself runs.
+/// The real-time priority: above ordinary threads, below the system's own real-time threads.
 inline constexpr int kRealtimePriority = 10;
 
-/// For the calling thread: round-robin real-time scheduling where the system allows it, else a
-/// higher priority where it allows that, and short time slices; and wake-ups without slack.
-/// Whatever is refused is left as it is: an unprivileged process keeps the default scheduling, and
-/// the queue of blocks must cover for it. @return whether real-time scheduling was allowed.
+/// Gives the calling thread round-robin real-time scheduling if the system allows it, otherwise a
+/// higher priority if that is allowed, and short time slices. Also removes the slack of its timers.
+/// A refused request changes nothing: an unprivileged process keeps the default scheduling, and the
+/// queue of blocks must absorb its delays. @return whether real-time scheduling was allowed.
 bool raise_thread_priority() noexcept;
 
 }  // namespace prostm

@@ -8,7 +8,7 @@
 namespace prostm {
 namespace {
 
-// 40 steps of 1/40 add up to 1 only to rounding; the last step takes the rest
+// 40 steps of 1/40 add up to 1 except for rounding; the last step includes the remainder
 constexpr double kRounding = 1e-9;
 
 double slewed(const Drive& drive, double max_rise) {
@@ -54,8 +54,8 @@ bool limit_drives(std::span<Drive> drives, double max_rise, double power_limit) 
     power += moved[f] * moved[f];
   }
 
-  // too much if one rises faster than another falls: then all go the same share of their way, since
-  // the straight line between two points of a ball stays in it
+  // above the limit if one rises faster than another falls: then all move by the same share of
+  // their change, since a straight line between two points of a ball stays inside it
   if (power > power_limit) {
     double share = 1.0;
     for (const Drive& drive : drives) {

@@ -10,7 +10,7 @@ namespace prostm {
 
 /// One focal point's intensity.
 struct Drive {
-  double wanted = 0.0;     ///< by its path; 0 to fall silent
+  double wanted = 0.0;     ///< requested by its path; 0 to fall silent
   double max_fall = 0.0;   ///< largest fall per sample
   double intensity = 0.0;  ///< emitted last, then emitted now
 };

@@ -47,7 +47,7 @@ void EmitSettings::visit(SettingsWriter& v) {
 int am_period(const EmitSettings& settings, double sample_rate) {
   // Both waveforms change by at most π/n a sample: with n = 126 by less than 1/40
   constexpr double kShortestPeriod = 126.0;  // [samples]
-  constexpr double kLowestFrequency = 25.0;  // [Hz], so that a loss is silent within 40 ms
+  constexpr double kLowestFrequency = 25.0;  // [Hz], so that output is silent 40 ms after a loss
   require_between("sample_rate", sample_rate, kShortestPeriod * kLowestFrequency, 1e6, "Hz");
   require_between("am_frequency", settings.am_frequency, kLowestFrequency,
                   sample_rate / kShortestPeriod, "Hz");

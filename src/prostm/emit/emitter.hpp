@@ -57,8 +57,9 @@ struct EmitSettings {
 /// the sample rate [Hz] must be 1 kHz to 1 MHz.
 void validate(const EmitSettings& settings, double sample_rate);
 
-/// Returns the samples of a period of the modulation of method am, (B4), rounded. Of 25 Hz up to a
-/// 126th of the sample rate, where the intensity changes by less than 1/40 a sample.
+/// Returns the number of samples in a period of method am's modulation, (B4), rounded. Frequencies
+/// are 25 Hz to a 126th of the sample rate, at which intensity changes by less than 1/40 per
+/// sample.
 /// @throws std::invalid_argument with a sentence for other frequencies.
 int am_period(const EmitSettings& settings, double sample_rate);
 
@@ -68,7 +69,7 @@ int am_period(const EmitSettings& settings, double sample_rate);
 double drive_intensity(double pressure, double full_scale, double silent_below, bool& saturated);
 
 /// Returns the largest intensity², or share of full scale's radiation pressure, that each of
-/// `paths` focal points may have if all want the same, (E4a): min(1, power_limit / paths).
+/// `paths` focal points may have if all request the same, (E4a): min(1, power_limit / paths).
 /// @pre paths ≥ 1, power_limit > 0.
 double even_share(int paths, double power_limit);
 
@@ -86,8 +87,8 @@ struct EmitStats {
   std::int64_t limited = 0;    ///< samples scaled down by the power limit
   std::int64_t faded = 0;      ///< samples in a fade of a transition
   std::int64_t laps_started = 0, laps_cut = 0;
-  std::int64_t stalls = 0;         ///< fade-outs because no plan came
-  std::int64_t refused_plans = 0;  ///< plans with a number not finite or out of bounds
+  std::int64_t stalls = 0;         ///< fade-outs because no plan arrived
+  std::int64_t refused_plans = 0;  ///< plans with a number that is not finite or out of bounds
   std::int64_t dropped_paths = 0;  ///< paths beyond the number of focal points, not drawn
   std::int64_t changed_paths = 0;  ///< paths played at another period than planned, PlayedPath
   std::int64_t silenced = 0;       ///< samples with a pressure above 0 and under silent_below
@@ -113,17 +114,18 @@ class Emitter : public SampleSource {
   /// or has a number that is not finite, a coordinate beyond 10 m, a loop or phase out of bounds,
   /// or pressures that do not match its points. Planner's thread.
   void submit() noexcept;
-  /// Fades out within 50 ms, until the next plan: the hand is gone, or a number was not finite.
+  /// Fades out within 50 ms, until the next plan. For a hand that is gone or a non-finite number.
   /// Planner's thread.
   void lose() noexcept;
-  /// Obeys a mute from the next block on: while it is on, output fades as after lose(), and plans
-  /// that come are lost; the first plan after it sounds. @pre before the first fill().
+  /// Obeys a mute from the next block on: while it is on, output fades out as after lose(), and
+  /// submitted plans are discarded; the first plan after it is played. @pre before the first
+  /// fill().
   void obey(std::shared_ptr<const Mute> mute) noexcept;
 
   int foci() const final;
 
   /// Takes the oldest unread report; false if all are read. A plan is reported once 90 % of it has
-  /// been drawn or nothing follows it any more. Keeps 1024 reports; later ones are lost. Planner's
+  /// been drawn or no focal point follows it. Keeps 1024 reports; later ones are lost. Planner's
   /// thread.
   bool next_take_over(TakeOver& out);
   /// Returns a copy of the counters as of the last block. Any one thread.

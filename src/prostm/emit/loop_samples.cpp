@@ -14,7 +14,7 @@ namespace prostm {
 namespace {
 
 constexpr double kSmallStretch = 0.01;
-constexpr int kLongestLaps = 8;      // of the longest lap, that a loop may have
+constexpr int kLongestLaps = 8;      // a loop is at most so many longest laps
 constexpr double kLongestLap = 1.0;  // [s]
 
 int laps_in(int samples, double lap) {
@@ -53,12 +53,12 @@ void check(const LiftedPlan& plan, const PlayedPlan& played, const EmitSettings&
   const std::size_t count = plan.paths.size() + plan.foci.size();
   if (count < 1 || count > static_cast<std::size_t>(settings.foci)) {
     throw std::invalid_argument("a plan has " + std::to_string(count) +
-                                (plan.foci.empty() ? " paths" : " foci") + "; a loop is of 1 to " +
+                                (plan.foci.empty() ? " paths" : " foci") + "; a loop takes 1 to " +
                                 std::to_string(settings.foci) + ", the number of focal points");
   }
   if (longest_of(played) > kLongestLap) {
     throw std::invalid_argument(
-        "a path takes more than 1 s; for a loop it must be shorter or its focal point faster");
+        "a lap of a path takes more than 1 s; make the path shorter or its focal point faster");
   }
 }
 
@@ -76,7 +76,7 @@ LoopSamples loop_of_foci(const LiftedPlan& plan, EmitSettings settings, double s
   loop.sample.resize(plan.foci.size() * static_cast<std::size_t>(loop.samples));
   loop.laps.assign(plan.foci.size(), 0);
   loop.stretch.assign(plan.foci.size(), 0.0);
-  // after a period all sound, whatever their phases
+  // after one period all are audible, whatever their phases
   const std::int64_t period = emitter.period();
   std::vector<FocusSample> begin(plan.foci.size() * static_cast<std::size_t>(period));
   emitter.fill(0, begin);
@@ -84,7 +84,7 @@ LoopSamples loop_of_foci(const LiftedPlan& plan, EmitSettings settings, double s
   return loop;
 }
 
-/// Sets the length of the loop, and the laps in it, of a plan whose paths go round on their own.
+/// Sets the loop's length and laps for a plan whose paths have periods of their own.
 void set_laps(LoopSamples& loop) {
   std::vector<double> laps;
   for (const PlayedPath& path : loop.played.paths) laps.push_back(path.period * loop.sample_rate);
@@ -107,7 +107,7 @@ void set_laps_in_step(LoopSamples& loop) {
   }
 }
 
-/// One sample of every focal point: where it is, and what its path wants.
+/// Computes one sample of every focal point: its position, and the intensity its path requests.
 void advance(const LiftedPlan& plan, const EmitSettings& settings, LoopSamples& loop, int k,
              std::span<Drive> drives) {
   bool saturated = false;
@@ -151,7 +151,7 @@ LoopSamples loop_samples(const LiftedPlan& plan, const EmitSettings& settings, d
   }
   loop.sample.resize(plan.paths.size() * static_cast<std::size_t>(loop.samples));
 
-  // twice round, so that the second time starts with the intensities that it ends with
+  // two loops, so that the second one starts with the intensities that it ends with
   const double slew = largest_slew(settings.fade_time, sample_rate);
   std::array<Drive, kMaxPaths> drive{};
   const std::span<Drive> drives(drive.data(), plan.paths.size());

@@ -10,14 +10,14 @@ namespace prostm {
 enum class MuteReason : std::uint32_t {
   Calibration = 1U,  ///< a finger is going to touch the transducers
   NoHand = 2U,       ///< the last step of a run in real time found no hand
-  Person = 4U,       ///< somebody who looks at the run asked for silence
-  Hot = 8U,          ///< the device says that it is too hot
-  Ended = 16U,       ///< the run was stopped, or something in it failed
-  Study = 32U        ///< a study presents nothing now
+  Person = 4U,       ///< a person muted it, on the terminal or a page
+  Hot = 8U,          ///< the device reports that it is too hot
+  Ended = 16U,       ///< the run was stopped or failed
+  Study = 32U        ///< a study is presenting nothing
 };
 
-/// Set by any thread, obeyed by an emitter at its next block. Nobody waits. Whoever finds it as
-/// set() left it also finds what was written before.
+/// Reasons for silence: any thread may set them, and an emitter obeys at its next block. Lock-free.
+/// A thread that sees a reason set or cleared also sees everything written before set() was called.
 class Mute {
  public:
   void set(MuteReason reason, bool on) noexcept {

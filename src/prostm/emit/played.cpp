@@ -17,13 +17,13 @@ namespace {
 constexpr double kLongestLap = 1.0;  // [s]
 constexpr int kLimitedLaps = 8;      // longest laps averaged under the power limit
 
-/// The places of a path at which one focal point sounds, all at equal arcs.
+/// The places on a path at which its focal point is sampled, at equal arc lengths.
 struct Lap {
   std::vector<double> wanted;  // intensity at each place, place 0 at the path's first point
   std::vector<double> power;   // Σ intensity² emitted there …
   std::vector<int> times;      // … over this many laps
-  // places from sample to sample; where a lap in step is no whole number of samples, the laps of a
-  // loop go by different places, and this is above 1
+  // places per sample; above 1 if a lap in step is not a whole number of samples, so that the laps
+  // of a loop visit different places
   std::size_t stride = 1;
 };
 
@@ -44,7 +44,7 @@ void set_places(const PlayedPath& path, std::int64_t loop, double sample_rate, L
   lap.times.resize(count);
 }
 
-/// Returns the lap with the intensities that the path wants.
+/// Returns the lap with the intensities that the path requests.
 Lap lap_of(const LiftedPath& path, const PlayedPath& played, std::int64_t loop,
            const EmitSettings& settings, double sample_rate) {
   Lap lap;
@@ -59,7 +59,7 @@ Lap lap_of(const LiftedPath& path, const PlayedPath& played, std::int64_t loop,
   return lap;
 }
 
-/// Goes round all paths at once and sums the power emitted after the first longest lap, or loop.
+/// Plays all paths together and sums the power emitted after the first longest lap or loop.
 /// @param loop samples of the loop of a plan in step, else 0.
 void play(const EmitSettings& settings, double sample_rate, std::int64_t loop,
           std::span<Lap> laps) {
@@ -91,8 +91,8 @@ void play(const EmitSettings& settings, double sample_rate, std::int64_t loop,
   }
 }
 
-/// Where the laps of a loop go by different places, each place gets the mean of the laps that pass
-/// around it.
+/// If the laps of a loop visit different places, gives each place the mean over the places around
+/// it that the laps visit.
 void average_laps(Lap& lap) {
   if (lap.stride == 1) return;
   const std::size_t n = lap.power.size(), half = lap.stride / 2;

@@ -12,12 +12,12 @@ namespace prostm {
 /// pressure, within the bounds of validate().
 double own_full_scale(double gain, double largest);
 
-/// Returns the pressures that PathEmitter plays once a plan goes round, (E9): after the drive law,
-/// full scale, the slew limit and the power limit. They are those of the second lap, each path
-/// begun at its first point, or the mean of laps if the power limit makes them differ. The factor
-/// of (E8) is divided out again, so that only its demand beyond full scale is missing. For a plan
-/// of foci, the peak of each, (B4).
-/// A lap of more than a second counts as a second. A plan in step is played loop by loop.
+/// Returns the pressures that PathEmitter plays once a plan is in its steady state, (E9): after the
+/// drive law, full scale, the slew limit and the power limit. They are those of the second lap,
+/// each path begun at its first point, or the mean of laps if the power limit makes them differ.
+/// The factor of (E8) is divided out again, so that only pressure beyond full scale is missing. For
+/// a plan of foci, they are the peak of each, (B4). A lap of more than a second counts as a second.
+/// A plan in step is played loop by loop.
 /// @param frame frame that the plan was made for. @param settings all paths or foci of the plan are
 /// played, whatever `foci` says. @throws as validate(settings, sample_rate) and require_loop() do.
 /// @pre every patch of the plan is in the frame.

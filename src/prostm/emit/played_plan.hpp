@@ -32,8 +32,8 @@ struct PlayedPlan {
   int changed_paths() const;  ///< paths whose period differs from the plan's
 };
 
-/// Computes how PathEmitter plays the paths of a plan, from the lap counts that it uses itself,
-/// (E2) and (E10). Allocates nothing. Foci keep their plan: `paths` is empty for them.
+/// Computes how PathEmitter plays the paths of a plan, from the same lap counts, (E2) and (E10).
+/// Allocates nothing. Foci are played as planned: `paths` is empty for them.
 /// @param plan its paths are measured, with finite numbers. @param sample_rate of the emission
 /// [Hz].
 /// @param max_speed limit of the emitter [m/s]. @pre is_loop(plan.loop).

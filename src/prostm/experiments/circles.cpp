@@ -55,7 +55,11 @@ CircleCurves compute(double circumference, const StmField& field, const Palm& pa
 }
 
 Chart chart_of(const std::string& title, const std::vector<CircleCurves>& all, bool memoryless) {
-  Chart chart{title, "speed of the focal point / (m/s)", "felt alike at 250 Hz / µm rms", false, {},
+  Chart chart{title,
+              "speed of the focal point / (m/s)",
+              "equivalent displacement at 250 Hz / µm rms",
+              false,
+              {},
               false};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Curve& curve = memoryless ? all[i].memoryless : all[i].nominal();
@@ -88,8 +92,8 @@ std::vector<CircleCurves> circle_curves(std::span<const double> circumferences, 
 }
 
 void draw_circles(const std::vector<CircleCurves>& all, const std::string& path) {
-  draw_charts({chart_of("Transducers that follow in 0.23 ms", all, false),
-               chart_of("Transducers that follow at once", all, true)},
+  draw_charts({chart_of("Transducers with a time constant of 0.23 ms", all, false),
+               chart_of("Transducers without delay", all, true)},
               path);
 }
 

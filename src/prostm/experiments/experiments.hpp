@@ -1,6 +1,6 @@
 #pragma once
 /// Published experiments with focal points on skin, computed with the skin model of
-/// docs/design/skin.md. docs/experiments has a page on each.
+/// docs/design/skin.md. docs/experiments has a page for each.
 
 #include <array>
 #include <functional>
@@ -12,12 +12,12 @@
 
 namespace prostm::experiments {
 
-/// Skins to compute with; the nominal one stands in the middle.
+/// Skins to compute with; the middle one is nominal.
 using Skins = std::span<const SkinSettings>;
-/// Called now and then while an experiment is computed; what it throws ends that.
+/// Called repeatedly while an experiment is computed; an exception it throws ends the computation.
 using Step = std::function<void()>;
 
-/// A circle's curves over the speeds 1 to 15 m/s on one skin.
+/// Curves of a circle over speeds of 1 to 15 m/s on one skin.
 struct Curve {
   std::vector<double> intensity;     ///< [m]
   std::vector<double> displacement;  ///< largest rms on the palm [m]
@@ -37,25 +37,27 @@ std::vector<CircleCurves> circle_curves(std::span<const double> circumferences, 
                                         const Step& step);
 void draw_circles(const std::vector<CircleCurves>& all, const std::string& path);
 
-/// Two foci, modulated at 200 Hz: the middle over the higher peak, by gap; 1 means a single place.
+/// Two foci, modulated at 200 Hz: the value midway between them over the higher peak, by gap; 1: a
+/// single peak.
 struct GapCurves {
   std::vector<double> gaps;               ///< [m]
-  std::vector<double> acoustic;           ///< of the radiation pressure
-  std::vector<std::vector<double>> felt;  ///< on each skin
+  std::vector<double> acoustic;           ///< for the radiation pressure
+  std::vector<std::vector<double>> felt;  ///< for the percept on each skin
 };
-inline constexpr double kNoticed = 0.8;    ///< a dip by a Weber fraction of 0.2
-inline constexpr double kGapRate = 200.0;  ///< of the modulation [Hz]
+inline constexpr double kNoticed = 0.8;    ///< a dip of one Weber fraction, 0.2
+inline constexpr double kGapRate = 200.0;  ///< frequency of the modulation [Hz]
 GapCurves gap_curves(Skins skins, const Step& step);
-/// The gap from which the dip stays at or below a level, interpolated; 0 if it never does [m].
+/// Returns the gap from which on the dip stays at or below a level, interpolated [m]; 0 without
+/// such a gap.
 double gap_where(const std::vector<double>& gaps, const std::vector<double>& dips, double level);
 void draw_gap(const GapCurves& curves, const std::string& path);
 
-/// Reach of the waves about a focal point on a line: rms distance of ẇ² along it [m].
+/// Extent of the waves about a focal point on a line: rms distance, weighted by ẇ², along it [m].
 struct Reach {
   double ahead = 0.0, behind = 0.0;
 };
-/// At one speed [m/s]: on the nominal skin, in a window that is longer behind and in an even one,
-/// and behind over ahead on each skin.
+/// Reaches at one speed [m/s]: on the nominal skin, in a window that is longer behind and in a
+/// symmetric one, and the ratio of behind to ahead on each skin.
 struct SpeedReach {
   double speed = 0.0;
   Reach nominal, even;
@@ -64,7 +66,7 @@ struct SpeedReach {
 std::vector<SpeedReach> line_reaches(std::span<const double> speeds, Skins skins, const Step& step);
 void draw_lines(const std::string& path);
 
-/// Shape of a square's map of skin velocity.
+/// Measures of a square's map of skin velocity.
 struct Look {
   double outline = 0.0;      ///< mean along the square [m/s]
   double inside = 0.0;       ///< largest in the inner half, over the largest of the map
@@ -72,24 +74,24 @@ struct Look {
   bool peak_inside = false;  ///< a local maximum lies in the inner half
   double half_width = 0.0;   ///< side of a square with the area above half of the largest [m]
 };
-/// At each of some speeds on one skin: of the rms velocity and of the largest.
+/// Looks of the rms velocity and of the largest velocity at each speed, on one skin.
 struct SquareLooks {
   std::vector<Look> rms, largest;
 };
 inline constexpr std::array kSquareSides = {0.01, 0.03};  ///< [m]
-/// @return the looks on each skin.
+/// Returns the looks on each skin.
 std::vector<SquareLooks> square_looks(double side, std::span<const double> speeds, Skins skins,
                                       const Step& step);
 void draw_squares(const std::string& path);
 
-/// How strongly a loop is felt: the mean of √e along it, and √E of the palm [m].
+/// Perceived intensity of a loop: the mean of √e along it, and √E of the palm [m].
 struct LoopStrength {
   double along = 0.0, intensity = 0.0;
 };
 inline constexpr std::array kLoopLengths = {0.035, 0.0525, 0.070, 0.0875,
                                             0.105, 0.1225, 0.140};              ///< [m]
 inline constexpr std::array kLoopSpeeds = {2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0};  ///< [m/s]
-/// Circles on one skin, length by length, speed by speed.
+/// Strengths of circles on one skin, by length and speed.
 using SkinLoops = std::vector<std::vector<LoopStrength>>;
 struct LoopTable {
   std::vector<SkinLoops> skins;
@@ -101,14 +103,16 @@ struct LoopTable {
 LoopTable loop_table(std::span<const double> lengths, std::span<const double> speeds, Skins skins,
                      const Step& step);
 inline constexpr double kLongestGain = 1.4;  ///< γ of the longest loop at its usual speed, (P9b)
-/// Gain of each length at 7 m/s that makes it as strong as the longest, whose gain is 1.
+/// Returns the gain of each length at 7 m/s that makes it as strong as the longest, whose gain
+/// is 1.
 std::vector<double> relative_gains(const SkinLoops& loops, double LoopStrength::*strength);
-/// The speed of kLoopSpeeds at which a loop is strongest [m/s].
+/// Returns the speed of kLoopSpeeds at which a loop is strongest [m/s].
 double strongest_speed(const std::vector<LoopStrength>& by_speed, double LoopStrength::*strength);
 void draw_loops(const LoopTable& table, const std::string& path);
 
 /// Returns the x of a curve's maximum over equally spaced x, by a parabola through the highest
-/// value and its neighbours; at an end, that end. @pre as many y as x, at least 3.
+/// value and its neighbours, or the end point if the highest value is there. @pre as many y as x,
+/// at least 3.
 double peak_place(const std::vector<double>& x, const std::vector<double>& y);
 
 }  // namespace prostm::experiments

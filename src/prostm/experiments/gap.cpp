@@ -1,4 +1,4 @@
-/// The gap from which two foci, amplitude modulated at 200 Hz, are felt as two.
+/// The gap above which two foci, amplitude modulated at 200 Hz, are perceived as two.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,14 +16,14 @@ namespace {
 constexpr int kSamples = 16;  // per period of the modulation
 const SkinPatch kPatch{49, 65, 1.5e-3};
 
-/// Returns the middle over the higher peak, along the line of two foci; 1 means a single place.
+/// Returns the value midway over the higher peak, along the line of two foci; 1: a single peak.
 double dip(const std::vector<double>& map) {
   const auto row = static_cast<std::size_t>(kPatch.rows / 2 * kPatch.cols);
   const auto first = map.begin() + static_cast<std::ptrdiff_t>(row);
   return first[kPatch.cols / 2] / *std::max_element(first, first + kPatch.cols);
 }
 
-/// Returns the square of (1 + cos ωt)/2, each transducer's drive, times the pressure at rest.
+/// Returns the pressure at rest times the square of (1 + cos ωt)/2, the drive of each transducer.
 std::vector<double> modulated(const std::vector<double>& at_rest) {
   std::vector<double> pressure;
   for (int k = 0; k < kSamples; ++k) {
@@ -73,8 +73,12 @@ double gap_where(const std::vector<double>& gaps, const std::vector<double>& dip
 }
 
 void draw_gap(const GapCurves& curves, const std::string& path) {
-  Chart chart{
-      "Two foci, modulated at 200 Hz", "gap / mm", "middle over the higher peak", false, {}, false};
+  Chart chart{"Two foci, modulated at 200 Hz",
+              "gap / mm",
+              "midpoint over the higher peak",
+              false,
+              {},
+              false};
   const auto add = [&](const std::string& name, const std::vector<double>& dips) {
     ChartSeries series{name, {}, dips};
     for (const double gap : curves.gaps) series.x.push_back(1e3 * gap);
@@ -84,8 +88,8 @@ void draw_gap(const GapCurves& curves, const std::string& path) {
   const std::size_t all = curves.felt.size(), nominal = all / 2;
   add("felt, nominal", curves.felt[nominal]);
   if (all > 1) {
-    add("felt, slower waves", curves.felt[nominal - all / 3]);
-    add("felt, faster waves", curves.felt[nominal + all / 3]);
+    add("perceived, slower waves", curves.felt[nominal - all / 3]);
+    add("perceived, faster waves", curves.felt[nominal + all / 3]);
   }
   draw_charts({chart}, path);
 }

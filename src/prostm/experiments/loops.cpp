@@ -1,5 +1,5 @@
-/// How strongly a loop is felt, by its length and speed: the gain that makes all lengths alike, and
-/// the speed that is felt strongest.
+/// Perceived intensity of a loop by length and speed: the gain that equalises all lengths, and the
+/// speed that is perceived as strongest.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ double along(const Lap& lap, const Palm& palm, const std::vector<double>& map) {
 }
 
 Chart gain_chart(const LoopTable& table) {
-  Chart chart{"Gain at 7 m/s that makes loops alike", "period / ms", "gain", false, {}, false};
+  Chart chart{"Gain at 7 m/s that equalises loops", "period / ms", "gain", false, {}, false};
   const auto add = [&](const std::string& name, auto value) {
     ChartSeries series{name, {}, {}};
     for (std::size_t l = 0; l < kLoopLengths.size(); ++l) {
@@ -60,7 +60,7 @@ Chart gain_chart(const LoopTable& table) {
 Chart speed_chart(const LoopTable& table) {
   Chart chart{"Strength along a loop",
               "speed of the focal point / (m/s)",
-              "felt alike at 250 Hz / µm rms",
+              "equivalent displacement at 250 Hz / µm rms",
               false,
               {},
               false};

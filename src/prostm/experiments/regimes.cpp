@@ -1,4 +1,4 @@
-/// A focal point on a straight line: the reach of its waves ahead and behind.
+/// A focal point on a straight line: the extent of its waves ahead and behind.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,8 +16,8 @@ constexpr double kShown[] = {2, 4, 6, 7, 8, 10};
 const SkinPatch kPatch{101, 151, 2e-3};
 constexpr int kFocusRow = 50, kFocusCol = 110;
 
-/// Returns the pressure of the array's focus at 200 mm in the moving patch, as if it were at rest.
-/// The loss by the transducers' lag, (A9), is included in the loops of the other experiments.
+/// Returns the pressure of the array's focus at 200 mm in the moving patch, as for a focus at rest:
+/// unlike the other experiments, without the loss due to the transducers' lag, (A9).
 std::vector<double> focus() {
   constexpr int kCells = 41;  // the focus and its first side lobes
   const Palm palm{SkinPatch{kCells, kCells, kPatch.cell}};
@@ -33,8 +33,8 @@ std::vector<double> focus() {
   return pressure;
 }
 
-/// Evaluates the patch from `first_col` on. The patch reaches 80 mm ahead of the focus and 220 mm
-/// behind it.
+/// Evaluates the patch from column `first_col` on. The patch extends 80 mm ahead of the focus and
+/// 220 mm behind it.
 Reach reach_of(const std::vector<double>& velocity, int first_col = 0) {
   double energy[2] = {0.0, 0.0}, moment[2] = {0.0, 0.0};
   for (int j = 0; j < kPatch.rows; ++j) {

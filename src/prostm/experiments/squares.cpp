@@ -57,7 +57,7 @@ Look look_at(const std::vector<double>& map, const Palm& palm, double side) {
   return look;
 }
 
-/// Velocity of the skin in every cell over a lap: rms and largest [m/s].
+/// Rms and largest velocity of the skin over a lap in every cell [m/s].
 struct VelocityMaps {
   std::vector<double> rms, largest;
 };

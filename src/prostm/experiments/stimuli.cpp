@@ -77,15 +77,15 @@ std::vector<double> StmField::pressure(const Lap& lap, double period, bool memor
   const Medium air;
   std::vector<double> phases(count);
   std::vector<std::complex<double>> drives(count);
-  Eigen::MatrixXcd sounding(static_cast<Eigen::Index>(count), kSamples);
-  // extra laps at the start until the initial state has faded: 12 time constants
+  Eigen::MatrixXcd outputs(static_cast<Eigen::Index>(count), kSamples);
+  // initial laps, until the initial state has decayed: 12 time constants
   const double fade = 12.0 * time_constant(settings);
   const int laps_before = memoryless ? 0 : static_cast<int>(std::ceil(fade / period));
   for (int n = 0; n < (laps_before + 1) * kSamples * per_sample; ++n) {
     const int in_lap = n % (kSamples * per_sample);
     if (n >= laps_before * kSamples * per_sample && n % per_sample == 0) {
       // the output at this moment results from the drives up to it
-      sounding.col(in_lap / per_sample) = Eigen::Map<const Eigen::VectorXcd>(
+      outputs.col(in_lap / per_sample) = Eigen::Map<const Eigen::VectorXcd>(
           dynamics.output().data(), static_cast<Eigen::Index>(count));
     }
     const Vec2 x = lap((in_lap + 0.5) / (kSamples * per_sample));
@@ -93,12 +93,12 @@ std::vector<double> StmField::pressure(const Lap& lap, double period, bool memor
     for (std::size_t i = 0; i < count; ++i) drives[i] = std::polar(1.0, phases[i]);
     dynamics.step(drives);
   }
-  if (memoryless) {  // the first moment follows the last drive
-    sounding.col(0) = Eigen::Map<const Eigen::VectorXcd>(dynamics.output().data(),
-                                                         static_cast<Eigen::Index>(count));
+  if (memoryless) {  // the output at the first moment is that of the last drive
+    outputs.col(0) = Eigen::Map<const Eigen::VectorXcd>(dynamics.output().data(),
+                                                        static_cast<Eigen::Index>(count));
   }
 
-  const Eigen::MatrixXcd field = to_palm_ * sounding;
+  const Eigen::MatrixXcd field = to_palm_ * outputs;
   std::vector<double> pressure;
   pressure.reserve(palm_.cells() * kSamples);
   for (Eigen::Index k = 0; k < kSamples; ++k) {
@@ -115,7 +115,7 @@ std::vector<double> foci_pressure(const TransducerArray& array, const Palm& palm
   std::vector<Vec3> places;
   for (const Vec2& x : foci) places.emplace_back(x.x(), x.y(), palm.height);
   const Propagation g = propagation_to(array, air, places);
-  // beyond the array's capability, so that the level is as high as possible
+  // a target beyond the array's output, so that the level is as high as possible
   const Eigen::VectorXd target = Eigen::VectorXd::Constant(g.rows(), 1e5);
   FocusSettings settings;
   settings.method = FocusMethod::LevenbergMarquardt;

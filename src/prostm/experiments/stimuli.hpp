@@ -1,6 +1,5 @@
 #pragma once
-/// The real array's radiation pressure on the palm over one lap of a focal point, or of modulated
-/// foci.
+/// Radiation pressure of a simulated array on the palm: over one lap of a focal point, or for foci.
 
 #include <functional>
 #include <vector>
@@ -16,18 +15,18 @@ struct Palm {
   SkinPatch patch{48, 48, 2e-3};
   double height = 0.2;  ///< above the array [m]
 
-  /// Returns the centre of a cell [m] from the palm's middle.
+  /// Returns the centre of a cell, relative to the palm's centre [m].
   Vec2 at(int row, int col) const {
     return patch.cell * Vec2(col - 0.5 * (patch.cols - 1), row - 0.5 * (patch.rows - 1));
   }
   std::size_t cells() const { return static_cast<std::size_t>(patch.rows * patch.cols); }
 };
 
-/// A closed path of the focal point at constant speed: its place [m] at a share 0..1 of the lap.
+/// A closed path of the focal point at constant speed: its position [m] at a share 0..1 of the lap.
 using Lap = std::function<Vec2(double)>;
 Lap circle_lap(double circumference);
 Lap square_lap(double side);
-/// To and fro along x.
+/// Returns a lap back and forth along x.
 Lap line_lap(double length);
 
 /// Radiation pressure of the array at full drive over one lap: K·cells [Pa].
@@ -36,8 +35,8 @@ class StmField {
   static constexpr int kSamples = 96;  ///< K: harmonics up to the 47th
 
   StmField(const TransducerArray& array, const Palm& palm);
-  /// @param memoryless transducers follow at once, otherwise by (A9). Drives change at 40 kHz or a
-  /// little faster, so that a lap is a whole number of them.
+  /// Computes the pressure over a lap. Drives change at 40 kHz or slightly faster, so that a lap is
+  /// a whole number of them. @param memoryless transducers without delay; otherwise (A9).
   std::vector<double> pressure(const Lap& lap, double period, bool memoryless) const;
 
  private:
@@ -46,8 +45,7 @@ class StmField {
   Eigen::MatrixXcd to_palm_;  // cells × transducers
 };
 
-/// Returns the radiation pressure at rest [Pa] of these foci, solved for equal pressures and as
-/// strong as one common factor of the drives allows.
+/// Returns the radiation pressure of foci at rest [Pa], solved for equal pressures at full output.
 std::vector<double> foci_pressure(const TransducerArray& array, const Palm& palm,
                                   const std::vector<Vec2>& foci);
 

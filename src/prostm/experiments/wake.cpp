@@ -24,7 +24,7 @@ void check(const SkinModel& model, const SkinPatch& patch, std::size_t values, d
   require_between("cell", patch.cell, 0.1e-3, 20e-3, "m");
   require_between("speed", speed, 0.01, 100.0, "m/s");
   if (model.relaxation_time() == 0.0) {
-    throw std::invalid_argument("the skin must have a loss, or its wakes never fade");
+    throw std::invalid_argument("the skin must have a loss, or its wakes never decay");
   }
   if (values != static_cast<std::size_t>(patch.rows * patch.cols)) {
     throw std::invalid_argument("there must be a pressure for each cell of the patch");

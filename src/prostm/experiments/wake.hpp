@@ -1,5 +1,5 @@
 #pragma once
-/// The skin under pressure that moves steadily along an endless straight line.
+/// Response of the skin to pressure that moves at constant speed along an infinite straight line.
 
 #include <span>
 #include <vector>

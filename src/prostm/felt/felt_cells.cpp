@@ -17,7 +17,7 @@ FeltCells::FeltCells(std::size_t most) : most_(most) {
   blocks_.reserve(kBlocks);
 }
 
-/// Sums up the skin in blocks of so many cells along an edge. @return whether there is room.
+/// Sums the skin in blocks of `width` × `width` cells. @return whether the capacity suffices.
 bool FeltCells::fill(const TargetField& target, double maximum, int width) {
   rows_ = (target.rows + width - 1) / width;
   cols_ = (target.cols + width - 1) / width;

@@ -11,10 +11,10 @@
 namespace prostm {
 namespace {
 
-constexpr double kLeastPercept = 1e-3;   // smooths √e at 0, over its rms
+constexpr double kLeastPercept = 1e-3;   // smoothing of √e at 0, relative to its rms
 constexpr double kLeastDistance = 1e-6;  // [mm]
 
-/// Returns the largest that a part of a pair can be: the sum of two products.
+/// Returns the upper bound of a part of a pair, a sum of two products.
 template <class Real>
 Real largest(const FeltSkins<Real>& skins, std::span<const FeltSource<Real>> sources) {
   Real table = 0, source = 0;
@@ -39,7 +39,7 @@ struct FeltLoss<Real>::Impl {
 
   struct Skin {
     Vector percept;
-    Real log_energy = 0, kept = 0;  // of this loop, and of the one whose loudness is kept
+    Real log_energy = 0, kept = 0;  // log energy of this loop, and the one to keep
   };
 
   Impl(std::size_t skins, std::size_t most_cells, std::size_t sources, const FeltWeights& w,
@@ -71,7 +71,7 @@ struct FeltLoss<Real>::Impl {
   }
   Real evaluate(std::span<const Real> amplitude, std::optional<Real> keep);
   Real evaluate(std::size_t s, std::optional<Real> keep);
-  /// Returns Σ_row pair · by of each source.
+  /// Returns Σ_row pair · by for each source.
   std::span<Pair> add_up(const std::vector<Pair>& by) {
     const std::span<Pair> all = std::span(sums).first(places.size());
     for (Pair& sum : all) sum.part.fill(0);
@@ -81,17 +81,17 @@ struct FeltLoss<Real>::Impl {
 
   FeltKernels<Real> run = felt_kernels<Real>();
   Real fine, energy_share, loudness, quiet;
-  Real per_square = 1;  // pairs, felt and pull are multiples of their units; 1 over their square
+  Real per_square = 1;  // 1 / unit² of pairs, felt and pull, which are scaled by units
   RenderLack<Real> lack;
   std::vector<FeltCells::Cell> cells;
   std::vector<FeltSource<Real>> places;
   std::vector<FeltTurn<Real>> turns;
   std::vector<Skin> skin;
   std::vector<Kept> pairs, slopes;    // rows × sources
-  std::vector<Pair> felt, pull;       // of each row: v of (W1), and ∂loss/∂v …
-  std::vector<Pair> turned;           // … turned by a quarter of each harmonic
-  std::vector<Pair> sums;             // of each source
-  std::vector<Real> line;             // of one row
+  std::vector<Pair> felt, pull;       // for each row: v of (W1), and ∂loss/∂v …
+  std::vector<Pair> turned;           // … rotated by a quarter turn in each harmonic
+  std::vector<Pair> sums;             // for each source
+  std::vector<Real> line;             // for one row
   Vector energy, by_root, by_energy;  // e in each cell, ∂loss/∂√e, ∂loss/∂e
 };
 
@@ -137,8 +137,8 @@ void FeltLoss<Real>::set_sources(const FeltSkins<Real>& skins,
   }
 }
 
-/// Returns the loss of one skin from what is felt in its rows, and sets their pull. @param keep
-/// that many times its loudness is to be kept from now on.
+/// Returns the loss of one skin from `felt` in its rows, and sets their `pull`. @param keep if
+/// given, makes this factor times the present loudness the one to keep.
 template <class Real>
 Real FeltLoss<Real>::Impl::evaluate(std::size_t number, std::optional<Real> keep) {
   Skin& s = skin[number];
@@ -225,7 +225,7 @@ template <class Real>
 void FeltLoss<Real>::turn(std::span<const Real> amplitude, int first, std::span<Real> gradient) {
   Impl& d = *impl_;
   constexpr std::size_t kImaginary = kFeltParts / 2;
-  // a source that acts later turns its harmonic n by −i n
+  // the derivative of harmonic n with respect to a source's time is a factor of −i n
   for (std::size_t row = 0; row < d.rows(); ++row) {
     for (std::size_t n = 0; n < kImaginary; ++n) {
       d.turned[row].part[n] = -d.pull[row].part[n + kImaginary];

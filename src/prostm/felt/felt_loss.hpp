@@ -1,6 +1,6 @@
 #pragma once
-/// How badly the percept of a loop renders its target, on several skins at once, and the gradient
-/// of that: equations (W2) to (W4) of docs/design/planner-felt.md.
+/// Loss of the percept of a loop against its target, on several skins at once, and its gradient:
+/// equations (W2) to (W4) of docs/design/planner-felt.md.
 
 #include <array>
 #include <cstddef>
@@ -14,7 +14,8 @@
 
 namespace prostm {
 
-/// A place where pressure acts, and how much of each harmonic it has there for a pressure of 1.
+/// A point source of pressure, and the spectrum of its pressure over the loop for an amplitude
+/// of 1.
 template <class Real>
 struct FeltSource {
   Real x = 0, y = 0;                           ///< [mm]
@@ -23,48 +24,48 @@ struct FeltSource {
 
 /// Weights of the parts of the loss (W4).
 struct FeltWeights {
-  double fine = 0.3;       ///< of 1 − S_0 beside 1 − S_8.5
-  double energy = 0.2;     ///< of 1 − S_8.5 of e, beside that of √e
-  double loudness = 0.02;  ///< of the logarithm of the loudness over that to keep
-  double quiet = 3.0;      ///< of the square of how much that is below −kSlack
+  double fine = 0.3;       ///< weight of 1 − S_0, relative to 1 − S_8.5
+  double energy = 0.2;     ///< weight of 1 − S_8.5 of e, relative to that of √e
+  double loudness = 0.02;  ///< weight of ρ, the log of the loudness over the one to keep
+  double quiet = 3.0;      ///< weight of max(0, −ρ − kSlack)²
   static constexpr double kSlack = 0.03;
 };
 
-/// The skins that a loop is felt on, one table each.
+/// Tables of the skins on which the percept is computed.
 template <class Real>
 using FeltSkins = std::vector<FocusResponse<Real>>;
 
-/// Sized once; nothing else allocates. In single precision it runs on vector kernels; in double
-/// precision on plain loops, as the reference.
+/// The loss (W4). Only construction allocates. Single precision uses vector kernels; double
+/// precision uses plain loops, as the reference.
 template <class Real>
 class FeltLoss {
  public:
-  /// @param skins number of skins. @param most_cells, most_sources that set_target() and
-  /// set_sources() will be given. @param with_slopes whether slide() will be called.
+  /// @param skins number of skins. @param most_cells, most_sources capacity for set_target() and
+  /// set_sources(). @param with_slopes whether slide() will be called.
   FeltLoss(std::size_t skins, std::size_t most_cells, std::size_t most_sources,
            const FeltWeights& weights, bool with_slopes);
   ~FeltLoss();
   FeltLoss(FeltLoss&&) noexcept;
   FeltLoss& operator=(FeltLoss&&) noexcept;
 
-  /// Takes over the cells. @pre some pressure is above 0.
+  /// Sets the cells. @pre some pressure is above 0.
   void set_target(const FeltCells& cells);
-  /// Takes over the places where pressure acts. @pre as many skins as in the constructor.
+  /// Sets the sources of pressure. @pre as many skins as in the constructor.
   void set_sources(const FeltSkins<Real>& skins, std::span<const FeltSource<Real>> sources);
-  /// Computes the loss (W4). @param amplitude of each source, of either sign; not all 0.
+  /// Computes the loss (W4). @param amplitude signed amplitude of each source; not all 0.
   Real evaluate(std::span<const Real> amplitude);
-  /// Does the same, and takes so many times the loudness of that on each skin as the one to keep.
+  /// Same as evaluate(), and makes `times` times this loudness, on each skin, the one to keep.
   Real keep_loudness(std::span<const Real> amplitude, Real times);
   /// Computes the gradient of the last evaluate() with respect to the amplitudes.
   void gradient(std::span<Real> gradient);
-  /// Computes the gradient of the last evaluate() with respect to the places [1/mm].
+  /// Computes the gradient of the last evaluate() with respect to the sources' positions [1/mm].
   void slide(std::span<const Real> amplitude, std::span<Real> gradient_x,
              std::span<Real> gradient_y);
-  /// Computes the gradient of the last evaluate() with respect to the moments at which the sources
-  /// act, as shares of the loop. @param first first harmonic of their spectra.
+  /// Computes the gradient of the last evaluate() with respect to the times of the sources, as
+  /// shares of the loop. @param first first harmonic of their spectra.
   void turn(std::span<const Real> amplitude, int first, std::span<Real> gradient);
 
-  /// Tells how badly other fields in the cells render the target of set_target().
+  /// Returns the rendering loss, for other fields in the cells, against the target of set_target().
   RenderLack<Real>& rendering();
   /// Percepts √e of the last evaluate() in each cell, by skin [µm per unit of amplitude].
   std::span<const Real> percept(std::size_t skin) const;

@@ -6,7 +6,7 @@
 namespace prostm {
 namespace {
 
-constexpr std::array<double, kFeltSkins> kSpeeds = {1.0, 0.7, 1.3};  // over the nominal ones
+constexpr std::array<double, kFeltSkins> kSpeeds = {1.0, 0.7, 1.3};  // relative to the nominal ones
 constexpr double kSigmaStep = 0.2e-3;                                // [m]
 
 }  // namespace

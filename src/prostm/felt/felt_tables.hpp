@@ -1,5 +1,5 @@
 #pragma once
-/// The skins that plans are fitted to, and their tables, made when they are first asked for.
+/// The skins that plans are fitted to, and their tables, computed on demand.
 
 #include <array>
 #include <cstddef>
@@ -13,16 +13,16 @@ namespace prostm {
 
 /// Number of skins that plans are fitted to.
 inline constexpr std::size_t kFeltSkins = 3;
-/// Returns them: waves as fast as the nominal ones, and 0.7 and 1.3 times as fast.
+/// Returns these skins: nominal, with 0.7 times, and with 1.3 times the nominal wave speed.
 std::vector<SkinSettings> felt_skins();
 
-/// Keeps the last few tables. Sized once; nothing else allocates.
+/// Cache of the last few tables. Only construction allocates.
 class FeltTables {
  public:
   FeltTables();
 
-  /// Returns the tables of felt_skins() for a focus and a period [s]. They stay valid until as many
-  /// others have been asked for. @param sigma of the focus [m], rounded to 0.2 mm.
+  /// Returns the tables of felt_skins() for a focus and a period [s]. They stay valid until the
+  /// cache is filled with others. @param sigma σ of the focus [m], rounded to 0.2 mm.
   const FeltSkins<float>& of(double sigma, double period);
 
  private:

@@ -10,9 +10,9 @@
 namespace prostm {
 namespace {
 
-constexpr double kLowest = 90.0;         // lowest frequency that counts [Hz]
+constexpr double kLowest = 90.0;         // lowest frequency of the model [Hz]
 constexpr double kWaveNumberStep = 4.0;  // [rad/m]: a third of the pole's width due to the loss
-constexpr int kWaveNumbers = 320;        // up to 1280 rad/m, where a focus has nothing
+constexpr int kWaveNumbers = 320;        // up to 1280 rad/m, where the spectrum of a focus vanishes
 constexpr double kMicro = 1e6;           // µm per m
 
 double wave_number(Eigen::Index m) {
@@ -75,7 +75,7 @@ void FocusResponseMaker::make(const SkinModel& skin, double sigma, double period
       spectrum_(m, n + kFeltHarmonics) = value.imag();
     }
   }
-  // products that need no buffer
+  // lazy products need no temporary
   values_ = value_.lazyProduct(spectrum_);
   slopes_ = slope_.lazyProduct(spectrum_);
   for (std::size_t r = 0; r < out.row.size(); ++r) {

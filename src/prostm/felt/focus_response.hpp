@@ -1,6 +1,6 @@
 #pragma once
-/// The vibration that a focus of unit pressure makes in its surroundings, harmonic by harmonic:
-/// (S9) and (S11) for a source that is Gaussian, weighted by the sensitivity (S6). Equation (W1) of
+/// The vibration around a focus of unit pressure, by harmonics: (S9) and (S11) for a Gaussian
+/// source, weighted by the sensitivity (S6). Equation (W1) of
 /// docs/design/planner-felt.md.
 
 #include <Eigen/Core>
@@ -12,19 +12,19 @@
 
 namespace prostm {
 
-/// Harmonics of a loop that are felt in the plan's model.
+/// Number of harmonics of a loop in the planner's model of the percept.
 inline constexpr int kFeltHarmonics = 8;
-/// Real and imaginary parts of a value for each harmonic: first all real parts.
+/// Number of real and imaginary parts of all harmonics, stored with all real parts first.
 inline constexpr std::size_t kFeltParts = 2 * static_cast<std::size_t>(kFeltHarmonics);
 
-/// Returns the first of the kFeltHarmonics harmonics of a loop that are felt, (W1).
-/// @param period of the loop [s], > 0.
+/// Returns the first of the kFeltHarmonics harmonics of a loop in the model, (W1).
+/// @param period period of the loop [s], > 0.
 int first_felt_harmonic(double period);
 
-/// A table over the distance from the focus's middle.
+/// A table over the distance from the focus's centre.
 template <class Real>
 struct FocusResponse {
-  static constexpr double kStep = 1.5;  ///< between distances [mm]
+  static constexpr double kStep = 1.5;  ///< step of the distances [mm]
   static constexpr int kDistances = 202;
 
   /// Weighted displacement per pressure [µm/Pa] at a distance, and its change over one step.
@@ -33,18 +33,18 @@ struct FocusResponse {
   };
   std::array<Row, static_cast<std::size_t>(kDistances)> row;
 
-  /// Returns the values of all harmonics at a distance, and their slopes [1/mm]: cubic between the
-  /// table's distances, those of the last one beyond. @param distance ≥ 0 [mm]
+  /// Returns the values of all harmonics at a distance, and their slopes [1/mm]: cubic
+  /// interpolation in the table, constant beyond its last distance. @param distance ≥ 0 [mm]
   Row at(Real distance) const;
 };
 
-/// Computes such tables. Its own table of Bessel functions is made once.
+/// Computes FocusResponse tables. The constructor tabulates the Bessel functions.
 class FocusResponseMaker {
  public:
   FocusResponseMaker();
 
-  /// Fills `out` for one skin. Allocates nothing. @param sigma of the focus [m], @param period of
-  /// the loop [s]
+  /// Fills `out` for one skin. Allocates nothing. @param sigma σ of the focus [m]. @param period
+  /// period of the loop [s]
   template <class Real>
   void make(const SkinModel& skin, double sigma, double period, FocusResponse<Real>& out);
 

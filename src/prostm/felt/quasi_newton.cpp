@@ -6,10 +6,10 @@
 namespace prostm {
 namespace {
 
-constexpr float kSufficient = 1e-4F;  // Armijo's share of the expected fall
+constexpr float kSufficient = 1e-4F;  // Armijo's share of the expected decrease
 constexpr float kTiny = 1e-30F;
-constexpr float kLeastCurvature = 1e-6F;  // cosine of a step and its change that is remembered
-constexpr float kShorter = 0.4F;  // a step that does not lower the cost is cut to this share
+constexpr float kLeastCurvature = 1e-6F;  // least cosine between a stored step and its change
+constexpr float kShorter = 0.4F;          // factor on a step that does not lower the cost
 
 }  // namespace
 
@@ -42,8 +42,8 @@ void QuasiNewton::find_direction() {
   memory_.find_direction(Operations{variables_}, direction_);
 }
 
-/// Goes along the direction, a shorter way each time until the cost falls enough. @param share of
-/// the direction to begin with. @return whether it moved.
+/// Backtracking line search along the direction, until the cost falls enough. @param share initial
+/// step, as a share of the direction. @return whether x moved.
 bool QuasiNewton::advance(const Cost& cost, float share, int evaluations, int& used) {
   const float slope = head(direction_).dot(head(gradient_));
   if (!(slope < 0.0F)) return false;

@@ -9,7 +9,7 @@
 
 namespace prostm {
 
-/// Sized once; nothing else allocates.
+/// The minimiser. Only construction allocates.
 class QuasiNewton {
  public:
   /// Returns the cost at x, and writes its gradient.
@@ -19,12 +19,12 @@ class QuasiNewton {
 
   /// Begins at x. @return the cost there.
   float begin(const Cost& cost, std::span<const float> x);
-  /// Lowers the cost from there on, and sets x to the lowest place found.
-  /// @param first_step length of the first step [unit of x]. @param evaluations at most, with that
-  /// of begin(), ≥ 1. @return the number of evaluations.
+  /// Lowers the cost from there, and sets x to the point of lowest cost found.
+  /// @param first_step length of the first step [unit of x]. @param evaluations maximum number,
+  /// including that of begin(), ≥ 1. @return the number of evaluations.
   int run(const Cost& cost, float first_step, int evaluations, std::span<float> x);
 
-  float lowest() const { return value_; }  ///< cost at the place found
+  float lowest() const { return value_; }  ///< cost at the point found
 
  private:
   static constexpr std::size_t kMemory = 6;
@@ -35,7 +35,7 @@ class QuasiNewton {
   float evaluate(const Cost& cost, Vector& x, Vector& gradient);
   bool advance(const Cost& cost, float share, int evaluations, int& used);
 
-  // of the first variables_ entries
+  // vectors use their first variables_ entries
   Eigen::Index variables_ = 0;
   LbfgsMemory<Vector, kMemory> memory_;
   Vector x_, gradient_, trial_, trial_gradient_, direction_;

@@ -9,9 +9,10 @@
 namespace prostm {
 namespace {
 
-constexpr double kBlur = 8.5;            // of S_8.5 [mm]
-constexpr double kReach = 4.0;           // standard deviations, (Q5)
-constexpr double kLeastVariance = 0.05;  // over the mean square: an even target has none
+constexpr double kBlur = 8.5;   // blur of S_8.5 [mm]
+constexpr double kReach = 4.0;  // standard deviations, (Q5)
+constexpr double kLeastVariance =
+    0.05;  // lower bound over the mean square, since a constant target has no variance
 
 }  // namespace
 
@@ -38,7 +39,7 @@ RenderLack<Real>::RenderLack(std::size_t most_cells) {
   for (Vector* v : {&area_, &target_, &blurred_target_, &density_, &smooth_, &pull_})
     v->setZero(most);
   place_.reserve(most_cells);
-  // the largest raster with its margin is a long line of blocks
+  // the largest raster, margin included, is that of a single line of blocks
   constexpr auto kMost =
       (Eigen::Index{FeltCells::kBlocks} + 2 * kMostReach) * (2 * kMostReach + 1) +
       Eigen::Index{kConvolveMargin};
@@ -72,8 +73,8 @@ void RenderLack<Real>::set(const FeltCells& cells) {
   blurred_.set(area(), blurred);
 }
 
-/// Adds up what is around each cell, weighted by a Gaussian: along the columns, then the rows. It
-/// is its own transpose.
+/// Convolves with a Gaussian along the columns, then the rows. The operation is symmetric, so its
+/// gradient is the same convolution.
 template <class Real>
 void RenderLack<Real>::blur(const Field& field, Eigen::Ref<Vector> out) {
   for (Eigen::Index i = 0; i < cells_; ++i) plane_[place_[static_cast<std::size_t>(i)]] = field[i];

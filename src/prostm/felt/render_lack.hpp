@@ -1,5 +1,5 @@
 #pragma once
-/// 1 − S of a field against its target, and the gradient of that.
+/// 1 − S of a field against its target, and its gradient.
 
 #include <Eigen/Core>
 #include <array>
@@ -15,10 +15,10 @@ class RenderLack {
  public:
   using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
-  /// Sized once; nothing else allocates.
+  /// Only construction allocates.
   explicit RenderLack(std::size_t most_cells);
 
-  /// Takes over a target. @pre some pressure is above 0.
+  /// Sets the target. @pre some pressure is above 0.
   void set(const FeltCells& cells);
   /// Returns 1 − S_8.5 + fine (1 − S_0). @param pull its gradient with respect to the field. @pre
   /// the field has a value above 0.
@@ -41,14 +41,14 @@ class RenderLack {
 
   static constexpr int kMostReach = 16;  // blocks that the blur reaches
   Eigen::Index cells_ = 0;
-  // of the first cells_ entries; density_ is the blur of the area
+  // the first cells_ entries are in use; density_ is the blur of the area
   Vector area_, target_, blurred_target_, density_, smooth_, pull_;
   Measure sharp_, blurred_;
   // the raster of blocks, with a margin of reach_ without area
   Eigen::Index rows_ = 0, cols_ = 0, reach_ = 0, stride_ = 0;
   std::array<Real, 2 * kMostReach + 1> taps_{};
-  std::vector<Eigen::Index> place_;  // of each cell
-  Vector plane_, down_, across_;     // not blurred, along columns, along rows too
+  std::vector<Eigen::Index> place_;  // index of each cell in the raster
+  Vector plane_, down_, across_;     // not blurred; blurred along columns; and along rows
 };
 
 }  // namespace prostm

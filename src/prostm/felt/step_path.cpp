@@ -29,7 +29,7 @@ void StepPath<Real>::sources(int first, std::span<FeltSource<Real>> out) const {
     out[i].y = y_[i];
     const Real weight = share(i), angle = -2 * static_cast<Real>(kPi) * time(i);
     for (int n = 0; n < kFeltHarmonics; ++n) {
-      // laps leave only the harmonics that they are a divisor of
+      // with several laps, only harmonics divisible by their number are left
       const int of_lap = (first + n) / laps_;
       const Real felt = of_lap * laps_ == first + n ? weight : Real(0);
       const Real phase = angle * static_cast<Real>(of_lap);
@@ -43,7 +43,7 @@ void StepPath<Real>::sources(int first, std::span<FeltSource<Real>> out) const {
 template <class Real>
 void StepPath<Real>::add_gradient(std::span<const Real> by_time, std::span<const Real> by_share,
                                   std::span<Real> gradient_x, std::span<Real> gradient_y) const {
-  // a longer path makes all moments and shares smaller; a longer segment makes later moments later
+  // a longer path reduces all times and shares; a longer segment delays the points after it
   Real whole = 0, later = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     whole += by_time[i] * time(i) + by_share[i] * share(i);

@@ -22,7 +22,7 @@ double gaussian(double distance2, double sigma) {
   return std::exp(-0.5 * distance2 / (sigma * sigma));
 }
 
-/// Falls from 1 below zero to 0 above, over about 10 mm.
+/// A smooth step from 1 (x < 0) to 0 (x > 0), about 10 mm wide.
 double step(double x) {
   constexpr double kWidth = 2.5e-3;  // [m]
   return 1.0 / (1.0 + std::exp(x / kWidth));
@@ -46,7 +46,7 @@ Pattern2 ridge(std::vector<Line> lines, double sigma) {
   };
 }
 
-/// `count` equal blobs, evenly around a circle.
+/// Returns `count` equal blobs, evenly spaced on a circle.
 Pattern2 plumes(int count, double radius, double sigma) {
   return [=](const Vec2& x) {
     double sum = 0.0;
@@ -99,7 +99,7 @@ Pattern2 speckle(Random& random) {
   };
 }
 
-/// Patterns of kFeltKinds about the origin [m].
+/// Returns a pattern of kFeltKinds about the origin [m].
 Pattern2 seen_pattern(FeltKind kind, Random& random) {
   const double a = random.uniform(), b = random.uniform();
   switch (kind) {
@@ -165,7 +165,7 @@ Pattern2 comb(double apart, double second, double third) {
   };
 }
 
-/// Patterns of kUnseenKinds about the origin [m].
+/// Returns a pattern of kUnseenKinds about the origin [m].
 Pattern2 unseen_pattern(FeltKind kind, Random& random) {
   const double a = random.uniform(), b = random.uniform();
   switch (kind) {
@@ -198,7 +198,7 @@ Pattern2 unseen_pattern(FeltKind kind, Random& random) {
   }
 }
 
-/// Centre of the palm of an outline [m].
+/// Returns the centre of the palm of an outline [m].
 Vec2 palm_of(Outline outline) {
   return outline == Outline::Hand ? Vec2(0.0, -0.040) : Vec2(0.0, 0.0);
 }
@@ -251,7 +251,7 @@ TargetField felt_field(FeltKind kind, std::uint64_t seed, Outline outline) {
   const bool unseen =
       std::find(kUnseenKinds.begin(), kUnseenKinds.end(), kind) != kUnseenKinds.end();
   const Pattern2 pattern = unseen ? unseen_pattern(kind, random) : seen_pattern(kind, random);
-  constexpr double kAside = 0.010;  // of the palm's centre [m]
+  constexpr double kAside = 0.010;  // largest distance from the palm's centre [m]
   const Vec2 centre =
       palm_of(outline) + Vec2(random.uniform(-kAside, kAside), random.uniform(-kAside, kAside));
   const double angle = random.uniform(0.0, 2.0 * kPi);

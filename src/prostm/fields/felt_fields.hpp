@@ -1,6 +1,7 @@
 #pragma once
-/// Generated target fields that judge how well a plan is felt: flat skin 200 mm above the array, of
-/// two outlines, with pressure patterns of twenty kinds that a seed places, turns and sizes.
+/// Generated target fields for evaluating the percept of plans: flat skin 200 mm above the array,
+/// of two outlines, with pressure patterns of twenty kinds. The seed determines a pattern's
+/// position, rotation and size.
 ///
 /// All fields depend on their arguments alone. Rasters are centred on the origin; the largest
 /// pressure is 1.
@@ -19,8 +20,8 @@ enum class Outline {
   Palm   ///< an oval of 76 mm × 96 mm, cells of 4 mm
 };
 
-/// The kind of a pattern. Those of kUnseenKinds are for judging alone: nothing may be tuned on
-/// them.
+/// The kind of a pattern. Those of kUnseenKinds are reserved for evaluation: nothing may be tuned
+/// on them.
 enum class FeltKind {
   Plume,
   TwoPlumes,

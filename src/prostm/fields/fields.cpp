@@ -24,7 +24,7 @@ double gaussian(const Vec2& x, double sigma) {
   return std::exp(-0.5 * x.squaredNorm() / (sigma * sigma));
 }
 
-/// Falls from 1 below zero to 0 above, over about four widths.
+/// A smooth step from 1 (x < 0) to 0 (x > 0), about four widths wide.
 double step(double x, double width) {
   return 1.0 / (1.0 + std::exp(x / width));
 }
@@ -32,11 +32,11 @@ double step(double x, double width) {
 const Vec2 kPalm(0.0, -0.035);
 constexpr double kPalmRadius = 0.037;
 
-/// Tips of the thumb and the four fingers of the open hand in a 160 mm square about the origin.
+/// Tips of the thumb and the four fingers of the open hand, in a 160 mm square about the origin.
 const std::array<Vec2, 5> kTips{Vec2(-0.064, 0.004), Vec2(-0.034, 0.066), Vec2(-0.009, 0.074),
                                 Vec2(0.016, 0.068), Vec2(0.040, 0.050)};
 
-/// Returns true on an open hand: a round palm and five fingers.
+/// Returns whether x is on the open hand: a round palm and five fingers.
 bool is_hand(const Vec2& x) {
   constexpr double kFingerRadius = 0.0085;
   if ((x - kPalm).norm() <= kPalmRadius) return true;
@@ -46,15 +46,15 @@ bool is_hand(const Vec2& x) {
   });
 }
 
-/// Place and shape of a pattern at one instant.
+/// Position and shape of a pattern at one instant.
 struct Look {
   Vec2 shift = Vec2::Zero();                       // [m]
   double size = 1.0, phase = 0.0, strength = 1.0;  // phase: rotation of the pattern [rad]
-  double travel = 0.0;                             // place of the moving edge [m]
+  double travel = 0.0;                             // position of the moving edge [m]
 };
 
-/// Returns the look of a frame. The hand moves the pattern by up to 2 mm a frame, the edge sweeps
-/// by up to 2.7 mm; each pattern has its own phases.
+/// Returns the look of a frame. The pattern moves with the hand by up to 2 mm per frame, the edge
+/// sweeps by up to 2.7 mm; each pattern has its own phases.
 Look look_at(Pattern pattern, int frame) {
   const double t = kFrameTime * frame, own = 2.4 * static_cast<double>(pattern);
   const auto wave = [&](double hertz, double start) {
@@ -71,7 +71,7 @@ Look look_at(Pattern pattern, int frame) {
 }
 
 double noise(const Vec2& x, const Look& look) {
-  // twelve waves of random-looking direction, clamped at zero
+  // twelve waves in pseudo-random directions, clamped at zero
   double sum = 0.0;
   for (int k = 0; k < 12; ++k) {
     const double wave = 2.0 * kPi / (0.03 + 0.004 * k);
@@ -104,7 +104,7 @@ double pressure_at(Pattern pattern, const Vec2& point, const Look& look) {
       return std::exp(-0.5 * segment_distance2(x, middle - half, middle + half) / (0.009 * 0.009));
     }
     case Pattern::Letter: {
-      // an L
+      // the letter L
       const Vec2 top(-0.02, 0.02), corner(-0.02, -0.06), end(0.025 * look.size, -0.06);
       const double d2 =
           std::min(segment_distance2(x, top, corner), segment_distance2(x, corner, end));
@@ -113,7 +113,7 @@ double pressure_at(Pattern pattern, const Vec2& point, const Look& look) {
     case Pattern::Noise:
       return noise(x, look);
     case Pattern::Fingertips: {
-      // the pads of thumb and index finger slide a little, pressed alternately
+      // the pads of thumb and index finger slide slightly, pressed alternately
       const Vec2 y = point - 0.3 * look.shift;
       const double share = 0.5 + 0.25 * std::sin(look.phase);
       return share * gaussian(y - kTips[0], 0.007 * look.size) +
@@ -173,7 +173,7 @@ TargetField moved(Pattern pattern, int frame) {
   look.shift.setZero();
   look.strength = 1.0;
   look.travel = 0.0;
-  // relative to the circle's centre, so that the pattern stays clear of the raster's border
+  // relative to the circle's centre, so that the pattern stays away from the raster's border
   const Vec2 shift = displacement(frame) - displacement(25) / 2.0;
   return raster(
       kMovedCells, kCell * kMovedCells, [](const Vec2&) { return true; },
@@ -191,7 +191,8 @@ Appearing appearing(int which, int frame) {
   };
   const auto tip = [](int i) { return Contact{kTips[static_cast<std::size_t>(i)], 0.007}; };
   const Contact palm{kPalm, 0.011};
-  // pairs 0 to 4: the palm, and each fingertip appears; then a fingertip, and the palm appears
+  // pairs 0 to 4: a steady palm, and one of the fingertips appears; then a steady fingertip, and
+  // the palm appears
   const Contact steady = which < 5 ? palm : tip(which - 4);
   const Contact second = which < 5 ? tip(which) : palm;
   const Vec2 sway = 0.004 * unit(2.0 * kPi * kFrameTime * frame);  // 1 mm a frame

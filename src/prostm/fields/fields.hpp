@@ -15,7 +15,7 @@ namespace prostm::fields {
 
 inline constexpr int kCells = 80;           ///< rows and columns
 inline constexpr double kCell = 2e-3;       ///< edge of a cell [m]
-inline constexpr int kFrames = 100;         ///< per sequence; later frames continue as smoothly
+inline constexpr int kFrames = 100;         ///< per sequence; later frames continue smoothly
 inline constexpr double kFrameTime = 0.04;  ///< between frames [s]
 
 enum class Pattern {
@@ -25,9 +25,9 @@ enum class Pattern {
   Ridge,
   Letter,
   Noise,
-  Fingertips,  ///< contacts on two of them
+  Fingertips,  ///< contacts on two fingertips
   Palm,        ///< the whole palm, pressed flat
-  Edge         ///< a front that sweeps over the hand, pressure falling off behind it
+  Edge         ///< a front that sweeps over the hand, with pressure falling off behind it
 };
 inline constexpr std::array kPatterns{Pattern::OnePlume,   Pattern::FourPlumes, Pattern::Ring,
                                       Pattern::Ridge,      Pattern::Letter,     Pattern::Noise,
@@ -42,8 +42,8 @@ TargetField make(Pattern pattern, int frame, int cells = kCells);
 
 /// Rows and columns of the fields of moved(): 200 mm, so that the pattern stays within the raster.
 inline constexpr int kMovedCells = 100;
-/// Displacement of the pattern of moved() from its place in frame 0 [m]. It circles with a radius
-/// of 12 mm in 50 frames: each frame is kMovedStep from the previous one.
+/// Displacement of the pattern of moved() from its position in frame 0 [m]. It moves on a circle of
+/// radius 12 mm in 50 frames, by kMovedStep per frame.
 Vec2 displacement(int frame);
 inline constexpr double kMovedStep = 1.507e-3;  ///< [m]: 24 mm · sin(π/50)
 /// Makes the pattern, cut off smoothly at 85 mm from its centre and moved rigidly by
@@ -55,13 +55,14 @@ struct Appearing {
   TargetField field;           ///< both contacts
   std::vector<double> second;  ///< pressure of the second contact alone; zeros before it appears
 };
-inline constexpr int kAppearings = 8;       ///< pairs of places on the hand
-inline constexpr int kAppearingFrame = 50;  ///< first with the second contact, at full strength
+inline constexpr int kAppearings = 8;  ///< pairs of contacts on the hand
+inline constexpr int kAppearingFrame =
+    50;  ///< first frame with the second contact, at full strength
 /// Makes a frame of pair `which` of 0..kAppearings − 1: the contacts are a fingertip and the palm.
 Appearing appearing(int which, int frame);
 
-/// Returns the field turned by 90°: cell (row, col) goes to (col, rows − 1 − row), x to (height of
-/// the raster − y, x).
+/// Returns the field rotated by 90°: cell (row, col) moves to (col, rows − 1 − row), point (x, y)
+/// to (height of the raster − y, x).
 TargetField rotated(const TargetField& field);
 
 }  // namespace prostm::fields

@@ -1,5 +1,5 @@
 #pragma once
-/// Generated focal points that move like those of a plan.
+/// Generated focal points that move similarly to those of a plan.
 
 #include <cstdint>
 #include <vector>

@@ -17,19 +17,19 @@ using figure::Panel;
 
 // the page in points
 constexpr double kLeft = 70.0, kTop = 84.0, kSide = 480.0, kRight = 30.0, kBelow = 96.0;
-constexpr double kMargin = 0.015, kAxis = 0.030;  // around the array; length of an arrow [m]
+constexpr double kMargin = 0.015, kAxis = 0.030;  // margin around the array; length of an arrow [m]
 
 void check(const ArrayFigure& f) {
   const bool sizes = !f.position.empty() && f.unit.size() == f.position.size();
   if (!sizes || !(f.radius > 0.0)) {
     throw std::invalid_argument(
-        fmt::format("the picture of an array has {} transducers and {} numbers of units; it must "
-                    "have as many, and at least one",
+        fmt::format("the picture of an array has {} transducers and {} unit numbers; it must have "
+                    "the same number of both, at least one",
                     f.position.size(), f.unit.size()));
   }
 }
 
-/// Around all transducers and the origin.
+/// The extent of all transducers and the origin.
 figure::Extent extent_of(const ArrayFigure& f) {
   figure::Extent extent{Vec2::Zero(), Vec2::Zero()};
   for (const Vec3& p : f.position) {
@@ -75,7 +75,7 @@ void draw_array(const ArrayFigure& f, const std::string& path) {
   Canvas canvas(path, kLeft + kSide + kRight, kTop + space.height + kBelow);
   canvas.text(Vec2(kLeft, 32.0), f.title, {.size = 15.0, .bold = true});
   canvas.text(Vec2(kLeft, 50.0),
-              "seen from above, as D has it: the hand is between the reader and the array",
+              "seen from above, in frame D: the hand is between the viewer and the array",
               {.size = 10.5, .colour = figure::kFaintInk});
   Panel panel(canvas, space, extent);
   const double radius = std::max(1.0, f.radius * panel.scale());
@@ -92,7 +92,7 @@ void draw_array(const ArrayFigure& f, const std::string& path) {
   const int units = 1 + *std::ranges::max_element(f.unit);
   canvas.text(Vec2(kLeft, kTop + space.height + 62.0),
               fmt::format("{} transducers in {} unit{}; transducer 0 of each unit is dark; the "
-                          "arrows leave D's origin",
+                          "arrows start at D's origin",
                           f.position.size(), units, units == 1 ? "" : "s"),
               {.size = 11.0});
   canvas.save();

@@ -18,12 +18,12 @@ using figure::Box;
 using figure::Canvas;
 using figure::Colour;
 
-constexpr double kWidth = 430.0, kHeight = 320.0;  // of the drawing alone [points]
+constexpr double kWidth = 430.0, kHeight = 320.0;  // of the drawing without axes [points]
 constexpr double kLeft = 74.0, kRight = 118.0, kMostRight = 360.0, kTop = 52.0, kBottom = 58.0;
 constexpr figure::TextStyle kName{.size = 11.5, .bold = true};
 constexpr double kNameGap = 10.0;
 
-/// One axis: value to 0..1.
+/// One axis, which maps values to 0..1.
 struct Axis {
   double low = 0.0, high = 1.0;
   bool logarithmic = true;
@@ -43,7 +43,7 @@ Axis axis_of(double low, double high, bool logarithmic) {
     return {low - margin, high + margin, false,
             figure::tick_step(high - low + 2.0 * margin, kTicks)};
   }
-  // whole decades; a value may stand out by 2 %
+  // whole decades; a value may lie outside by 2 %
   const double from = std::floor(std::log10(low) + 0.01), to = std::ceil(std::log10(high) - 0.01);
   return {std::pow(10.0, from), std::pow(10.0, std::max(to, from + 1.0))};
 }
@@ -62,7 +62,7 @@ std::string power_text(int exponent) {
 /// Draws one chart into a box.
 class ChartDrawing {
  public:
-  /// @param right the width beside the box that names may take.
+  /// @param right width available for names to the right of the box.
   ChartDrawing(Canvas& canvas, const Chart& chart, const Box& box, double right)
       : canvas_(canvas), chart_(chart), box_(box), right_(right) {
     double low_x = HUGE_VAL, high_x = -HUGE_VAL, low_y = HUGE_VAL, high_y = -HUGE_VAL;
@@ -115,7 +115,7 @@ class ChartDrawing {
                  text.empty() ? figure::mix(figure::kPaper, figure::kNoSkin, 0.6) : figure::kSkin,
                  0.7);
     if (text.empty()) return;
-    if (is_x) {  // long numbers leave out some
+    if (is_x) {  // with long numbers, omit some
       const double half = 0.5 * canvas_.text_width(text, {.size = 10.5}), kApart = 5.0;
       if (at.x() - half < tick_end_ + kApart) return;
       tick_end_ = at.x() + half;
@@ -128,7 +128,7 @@ class ChartDrawing {
     if (!axis.logarithmic) {
       const double first = std::ceil(axis.low / axis.step),
                    last = std::floor(axis.high / axis.step);
-      constexpr int kMostTicks = 20;  // also where rounding has eaten the range
+      constexpr int kMostTicks = 20;  // a bound, in case rounding makes the range vanish
       for (int i = 0; i < kMostTicks && first + i <= last; ++i)
         tick(is_x, (first + i) * axis.step, figure::tick_text((first + i) * axis.step));
       return;
@@ -141,7 +141,7 @@ class ChartDrawing {
     for (int e = first; e <= last; ++e) tick(is_x, std::pow(10.0, e), power_text(e));
   }
 
-  /// y ∝ x, below all lines.
+  /// Draws the line y ∝ x, below all series.
   void slope() {
     if (!x_.logarithmic || !y_.logarithmic) return;
     double factor = HUGE_VAL;
@@ -181,7 +181,7 @@ class ChartDrawing {
       canvas_.disc(to_page(dot.x, dot.y), kLargest * std::sqrt(dot.area / largest_), colour);
   }
 
-  /// Moved up or down from its y, so that none covers that of another series.
+  /// Draws a span, shifted vertically so that it does not overlap those of other series.
   void span(std::size_t i) {
     if (!chart_.series[i].span) return;
     constexpr double kApart = 7.0, kEnd = 3.5;
@@ -204,11 +204,11 @@ class ChartDrawing {
     canvas_.disc(at(of.value), 3.2, colour);
   }
 
-  /// Over each point its label, where there is room for it.
+  /// Draws the label of each point above it, if there is room.
   void labels(std::size_t i, const std::vector<Vec2>& page) {
     constexpr double kAbove = 9.0, kLine = 11.0, kApart = 4.0;
     const ChartSeries& series = chart_.series[i];
-    double taken_to = -HUGE_VAL, taken_at = 0.0;  // right end and height of the one before
+    double taken_to = -HUGE_VAL, taken_at = 0.0;  // right end and height of the previous label
     for (std::size_t k = 0; k < series.labels.size(); ++k) {
       const figure::TextStyle style{
           .size = 10.5, .colour = figure::path_colour(i), .align = Align::Centre};
@@ -223,7 +223,7 @@ class ChartDrawing {
     }
   }
 
-  /// Each name at its line's right end, moved apart where they would touch.
+  /// Draws each name at the right end of its line, moved apart if they would touch.
   void names() {
     constexpr double kSpacing = 15.0;
     std::vector<std::size_t> order(chart_.series.size());
@@ -250,7 +250,7 @@ class ChartDrawing {
   Box box_;
   double right_;
   double largest_ = 0.0;         // area of a dot
-  double tick_end_ = -HUGE_VAL;  // right end of the last number under the box
+  double tick_end_ = -HUGE_VAL;  // right end of the last number below the box
   Axis x_, y_;
 };
 
@@ -267,9 +267,10 @@ void check(const Chart& chart) {
     for (const ChartDot& dot : series.dots) x.push_back(dot.x), y.push_back(dot.y);
     if (x.empty() || series.x.size() != series.y.size() || !good(x, chart.logarithmic_x) ||
         !good(y, chart.logarithmic_y)) {
-      throw std::invalid_argument("the line '" + series.name +
-                                  "' must have as many x as y, all finite, and positive on a "
-                                  "logarithmic axis");
+      throw std::invalid_argument(
+          "the line '" + series.name +
+          "' must have the same number of x and y, all finite, and positive on a "
+          "logarithmic axis");
     }
     if (series.labels.empty() || series.labels.size() == series.x.size()) continue;
     throw std::invalid_argument("the line '" + series.name + "' must have a label for each point");

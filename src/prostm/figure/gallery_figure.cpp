@@ -1,4 +1,4 @@
-/// Many targets, each beside what planners make of it.
+/// Many targets, each next to the planners' plans of it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,27 +20,27 @@ using figure::Panel;
 constexpr double kPanel = 158.0, kPanelGap = 7.0, kFieldGap = 34.0;
 constexpr double kMargin = 34.0, kTop = 112.0, kAbove = 40.0, kBelow = 30.0, kRowGap = 8.0,
                  kNote = 18.0;
-constexpr double kBar = 84.0;  // room for the colour bar at the right
+constexpr double kBar = 84.0;  // room for the colour bar on the right
 constexpr double kCaption = 10.5;
 
 void check(const std::vector<GalleryField>& fields) {
   if (fields.empty()) throw std::invalid_argument("a gallery must have at least one field");
   for (const GalleryField& field : fields) {
     if (field.plans.size() != fields.front().plans.size()) {
-      throw std::invalid_argument(
-          fmt::format("the gallery's field '{}' has {} plans and must have the {} of the first",
-                      field.name, field.plans.size(), fields.front().plans.size()));
+      throw std::invalid_argument(fmt::format(
+          "the gallery's field '{}' has {} plans; it must have {}, like the first field",
+          field.name, field.plans.size(), fields.front().plans.size()));
     }
     for (const GalleryPlan& plan : field.plans) {
       if (plan.rendered.size() == field.target.size()) continue;
       throw std::invalid_argument(
-          fmt::format("the field of '{}' has {} cells and must have the target's {}", plan.name,
+          fmt::format("the field of '{}' has {} cells; it must have {}, like the target", plan.name,
                       plan.rendered.size(), field.target.size()));
     }
   }
 }
 
-/// 50 mm, in the corner of a panel.
+/// Draws a scale bar of 50 mm in the corner of a panel.
 void draw_scale(Canvas& canvas, const Panel& panel) {
   constexpr double kLength = 0.050;
   const Box& box = panel.box();
@@ -62,7 +62,7 @@ void write_metrics(Canvas& canvas, const Box& box, const Metrics& m, GalleryCapt
       {.size = kCaption, .align = Align::Centre, .bold = is_best});
 }
 
-/// One field: its target, then its plans, from `corner` on to the right.
+/// Draws one field: its target, then its plans, from `corner` to the right.
 void draw_field(Canvas& canvas, const GalleryField& field, GalleryCaption caption,
                 const Vec2& corner) {
   const double full = max_pressure(field.target);
@@ -95,8 +95,8 @@ std::string explanation(const std::vector<GalleryField>& fields) {
     return std::any_of(field.plans.begin(), field.plans.end(), stands);
   });
   const std::string pressure = "Pressure over the target's maximum, on the skin; the focal points ";
-  return pressure + (any_stands ? "run along white lines or stand at white points."
-                                : "run along the white lines.");
+  return pressure + (any_stands ? "move along white lines or stay at white points."
+                                : "move along the white lines.");
 }
 
 }  // namespace
@@ -109,7 +109,7 @@ void draw_gallery(const GalleryPage& page, const std::vector<GalleryField>& fiel
   const std::size_t rows = (fields.size() + in_row - 1) / in_row;
   const double field_width =
       static_cast<double>(fields.front().plans.size() + 1) * (kPanel + kPanelGap) - kPanelGap;
-  // all panels are squares that hold their fields' own shape
+  // all panels are squares; fields keep their aspect ratio within them
   const double row_height = kAbove + kPanel + kBelow + kRowGap;
   const double width = kMargin + static_cast<double>(in_row) * (field_width + kFieldGap) -
                        kFieldGap + kBar + kMargin;

@@ -29,7 +29,7 @@ void check(const MapFigure& maps) {
       continue;
     }
     throw std::invalid_argument(
-        fmt::format("the map '{}' has {} values and must have one for each of its {} × {} cells",
+        fmt::format("the map '{}' has {} values; it must have one for each of its {} × {} cells",
                     map.title, map.values.size(), map.rows, map.cols));
   }
 }
@@ -58,7 +58,7 @@ void draw_maps(const MapFigure& maps, const std::string& path) {
   check(maps);
   const auto columns = static_cast<std::size_t>(maps.columns);
   const std::size_t rows = (maps.maps.size() + columns - 1) / columns;
-  double tallest = 0.0;  // of the maps, over their width
+  double tallest = 0.0;  // largest height of a map over its width
   for (const FieldMap& map : maps.maps) {
     tallest = std::max(tallest, std::min(1.0, static_cast<double>(map.rows) / map.cols));
   }

@@ -1,4 +1,4 @@
-/// Draws the pressure that an array puts on the skin beside its target.
+/// Draws the pressure of an array on the skin, next to its target.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using figure::Panel;
 // the page in points
 constexpr double kPanel = 270.0, kGap = 62.0, kLeft = 66.0, kTop = 96.0, kBelow = 62.0, kBar = 76.0;
 
-/// From blue, too little, through white to red, too much.
+/// Colour of a difference: blue (too little), white, red (too much).
 Colour difference_colour(double t) {
   constexpr Colour kLess{0.13, 0.30, 0.62}, kMore{0.70, 0.12, 0.14};
   const double size = std::min(std::abs(t), 1.0);
@@ -40,7 +40,8 @@ void difference_bar(Canvas& canvas, const Box& box) {
       {.size = 11.0, .colour = figure::kFaintInk, .align = figure::Align::Centre, .upwards = true});
 }
 
-/// The envelope as it is scored, minus the target, over the target's largest.
+/// The difference of the envelope, scaled as for its score, and the target, over the target's
+/// maximum.
 std::vector<double> differences(const TargetField& target, const std::vector<double>& envelope) {
   double with_target = 0.0, with_itself = 0.0;
   for (std::size_t c = 0; c < target.size(); ++c) {

@@ -23,7 +23,7 @@ constexpr double kPanelWidth = 340.0, kPanelHeight = 330.0, kColumn = 400.0;
 constexpr double kLeft = 62.0, kTop = 84.0, kBelowPanel = 84.0, kRowHeight = 21.0;
 constexpr double kBarRoom = 64.0;  // for the colour bar between the first two columns
 constexpr double kPageWidth = kLeft + 3.0 * kColumn + kBarRoom + 34.0;
-constexpr double kBetween = 56.0;  // two plans, one under the other
+constexpr double kBetween = 56.0;  // gap between two plans, one above the other
 constexpr double kFirstColumn = kLeft + 330.0, kColumnStep = 112.0;  // of the table
 
 void check(const PlanFigure& f) {
@@ -32,7 +32,7 @@ void check(const PlanFigure& f) {
   }
   if (f.reconstruction.size() != f.target->size()) {
     throw std::invalid_argument(
-        fmt::format("the reconstruction has {} cells and must have the target's {}",
+        fmt::format("the reconstruction has {} cells; it must have {}, like the target",
                     f.reconstruction.size(), f.target->size()));
   }
 }
@@ -61,7 +61,7 @@ void draw_tour(Panel& panel, const PlanTrace& trace, const std::vector<int>& tou
   for (const Vec2& x : points) panel.disc(x, 2.4, colour);
 }
 
-/// A number for each path or focus in its colour, under the panel that shows them.
+/// Writes a value for each path or focus in its colour, under the panel that shows them.
 void write_values(Canvas& canvas, const Panel& panel, const std::vector<std::string>& values,
                   const std::string& unit) {
   const figure::TextStyle plain{.size = 11.0, .bold = true};
@@ -81,7 +81,7 @@ void write_values(Canvas& canvas, const Panel& panel, const std::vector<std::str
   }
 }
 
-/// Panel `index` of three columns and two rows, the first row at `top`.
+/// Makes panel `index` of three columns and two rows, with the first row at `top`.
 Panel panel_at(Canvas& canvas, const TargetField& target, int index, double top) {
   const figure::Extent extent = figure::extent_of(target);
   const int column = index % 3;
@@ -91,12 +91,12 @@ Panel panel_at(Canvas& canvas, const TargetField& target, int index, double top)
   return {canvas, {x, y, kPanelWidth, kPanelHeight}, extent};
 }
 
-/// Whether the planner went through the paper's steps, which then get panels of their own.
+/// Whether the plan has the paper's steps, which have their own panels.
 bool has_steps(const PlanFigure& f) {
   return !f.trace->clusters.empty();
 }
 
-/// The panels that show fields: the first and the last, on one scale.
+/// Draws the panels with fields: the first and the last, on one scale.
 void draw_field_panels(Canvas& canvas, const PlanFigure& f, double top) {
   const double full = max_pressure(*f.target);
   Panel target = panel_at(canvas, *f.target, 0, top);
@@ -113,7 +113,7 @@ void draw_field_panels(Canvas& canvas, const PlanFigure& f, double top) {
   }
 }
 
-/// The paths, with their lengths.
+/// Draws the paths, with their lengths.
 void draw_paths_panel(Canvas& canvas, const PlanFigure& f, double top) {
   Panel panel = panel_at(canvas, *f.target, has_steps(f) ? 4 : 1, top);
   panel.silhouette(*f.target);
@@ -128,7 +128,7 @@ void draw_paths_panel(Canvas& canvas, const PlanFigure& f, double top) {
   write_values(canvas, panel, lengths, " mm");
 }
 
-/// The foci, their areas as their pressures, with those.
+/// Draws the foci, with areas proportional to their pressures, and the pressures.
 void draw_foci_panel(Canvas& canvas, const PlanFigure& f, double top) {
   Panel panel = panel_at(canvas, *f.target, 1, top);
   panel.silhouette(*f.target);
@@ -144,7 +144,7 @@ void draw_foci_panel(Canvas& canvas, const PlanFigure& f, double top) {
   write_values(canvas, panel, pressures, " max p*");
 }
 
-/// The panels that show how the paths come about: (b) to (d).
+/// Draws the panels with the steps of planning: (b) to (d).
 void draw_step_panels(Canvas& canvas, const PlanFigure& f, double top) {
   const PlanTrace& trace = *f.trace;
   for (int index = 1; index <= 3; ++index) {
@@ -171,7 +171,7 @@ struct TableRow {
   bool is_control;
 };
 
-/// The metrics that some row knows.
+/// The metrics available in at least one row.
 std::vector<Quantity<Metrics>> columns_of(const std::vector<TableRow>& rows) {
   std::vector<Quantity<Metrics>> columns;
   for (const Quantity<Metrics>& metric : quantities<Metrics>()) {
@@ -183,8 +183,8 @@ std::vector<Quantity<Metrics>> columns_of(const std::vector<TableRow>& rows) {
   return columns;
 }
 
-/// One row; where a control is better than `own`, as far as the printed digits show, in the colour
-/// of a warning.
+/// Draws one row; a control's value that is better than `own`, in the printed digits, has the
+/// warning colour.
 void draw_row(Canvas& canvas, const TableRow& row, const std::vector<Quantity<Metrics>>& columns,
               const Metrics& own, double y) {
   const bool bold = !row.is_control;
@@ -204,7 +204,7 @@ void draw_row(Canvas& canvas, const TableRow& row, const std::vector<Quantity<Me
   }
 }
 
-/// The plan's metrics above those of what it is compared with.
+/// Draws the plan's metrics above those of the plans that it is compared with.
 void draw_table(Canvas& canvas, const std::vector<TableRow>& rows, double top) {
   const std::vector<Quantity<Metrics>> columns = columns_of(rows);
   const double right = kFirstColumn + kColumnStep * (static_cast<double>(columns.size()) - 0.15);
@@ -239,7 +239,7 @@ void draw_plan(const PlanFigure& f, const std::string& path, const PlanFigure* b
   }
   for (const Control& c : f.controls) rows.push_back({"control: " + c.name, &c.metrics, true});
 
-  // the page is as high as its panels and its table need
+  // the height of the page depends on the panels and the table
   const Box panel =
       figure::fitted({0.0, 0.0, kPanelWidth, kPanelHeight}, figure::extent_of(*f.target));
   const auto height_of = [&](const PlanFigure& block) {

@@ -26,23 +26,26 @@ constexpr double kTop = 84.0, kSideLeft = 62.0, kSideWidth = 470.0, kSideHeight 
 constexpr double kFieldLeft = 612.0, kFieldColumn = 330.0, kFieldWidth = 262.0;
 constexpr double kBelowField = 84.0, kBelowSide = 80.0;
 constexpr Box kSideSpace{kSideLeft, kTop, kSideWidth, kSideHeight};
-constexpr double kUpright = 1e-3;  // normal's share along z of a plane that never meets the z axis
+constexpr double kUpright = 1e-3;  // smallest z component of a normal; below, the plane is upright
 
 void check(const SceneFigure& f) {
   const auto cells =
       static_cast<std::size_t>(std::max(f.nx, 0)) * static_cast<std::size_t>(std::max(f.nz, 0));
   if (cells == 0 || f.smoke.size() != cells || f.hand.size() != cells || !(f.cell > 0.0)) {
-    throw std::invalid_argument(fmt::format(
-        "a scene's slice of {} x {} cells has {} smoke and {} hand values and must have as many",
-        f.nx, f.nz, f.smoke.size(), f.hand.size()));
+    throw std::invalid_argument(
+        fmt::format("a scene's slice of {} x {} cells has {} smoke and {} hand values; it must "
+                    "have one each per "
+                    "cell",
+                    f.nx, f.nz, f.smoke.size(), f.hand.size()));
   }
   if (f.reconstructions.size() != f.targets.size()) {
-    throw std::invalid_argument(fmt::format("a scene has {} reconstructions and must have {}",
+    throw std::invalid_argument(fmt::format("a scene has {} reconstructions; it must have {}",
                                             f.reconstructions.size(), f.targets.size()));
   }
   for (std::size_t i = 0; i < f.targets.size(); ++i) {
     if (f.reconstructions[i].size() != f.targets[i].size()) {
-      throw std::invalid_argument("a reconstruction must have as many cells as its target");
+      throw std::invalid_argument(
+          "a reconstruction must have the same number of cells as its target");
     }
     if (std::abs(f.targets[i].X_DP(2, 2)) < kUpright) {
       throw std::invalid_argument("the plane of a target must not be upright");
@@ -50,7 +53,7 @@ void check(const SceneFigure& f) {
   }
 }
 
-/// Bilinear between cell centres, clamped at the border.
+/// Interpolates bilinearly between cell centres, clamped at the border.
 template <class T>
 double sample(const std::vector<T>& values, int nx, int nz, double x, double z) {
   x = std::clamp(x, 0.0, nx - 1.0);
@@ -72,7 +75,7 @@ figure::Extent side_extent(const SceneFigure& f) {
   const Vec2 half = Vec2::Constant(0.5 * f.cell);
   figure::Extent extent{f.origin - half, f.origin + f.cell * Vec2(f.nx - 1, f.nz - 1) + half};
 
-  // room below for the array
+  // leaves room below for the array
   constexpr double kMargin = 0.012;
   for (const Vec2& transducer : f.array) {
     extent.low = extent.low.cwiseMin(transducer - Vec2::Constant(kMargin));
@@ -81,7 +84,7 @@ figure::Extent side_extent(const SceneFigure& f) {
   return extent;
 }
 
-/// Smoke in front of the hand, three drawn cells for a cell so that outlines are smooth.
+/// Draws smoke in front of the hand, with three drawn cells per cell for smooth outlines.
 void draw_slice(Panel& panel, const SceneFigure& f, const figure::Extent& extent) {
   const double cell = f.cell / 3.0;
   const Vec2 size = extent.high - extent.low;
@@ -98,14 +101,14 @@ void draw_slice(Panel& panel, const SceneFigure& f, const figure::Extent& extent
   });
 }
 
-/// The point of a target's plane above the middle of the array, in the plane: there its axes read
-/// 0, as those of the scene do.
+/// The point of a target's plane above the middle of the array, in the plane's coordinates: the
+/// zero of its axes, like that of the scene.
 Vec2 above_array(const TargetField& target) {
   const Eigen::Matrix2d axes = target.X_DP.linear().topLeftCorner<2, 2>();
   return axes.inverse() * -target.X_DP.translation().head<2>();
 }
 
-/// The raster of a target from the side, with the name of its x axis at that axis' end.
+/// Draws the raster of a target from the side, with the name of its x axis at the axis' end.
 void draw_plane(Canvas& canvas, const Panel& panel, const TargetField& target) {
   const figure::Extent e = figure::extent_of(target);
   const auto from_side = [&](double x, double y) {
@@ -164,14 +167,14 @@ void draw_side(Canvas& canvas, const SceneFigure& f) {
   draw_legend(canvas, panel.box());
 }
 
-/// Where the target of patch `i` may stand; the reconstruction stands a column to the right.
+/// The space for the target of patch `i`; the reconstruction is one column to the right.
 Box field_space(const SceneFigure& f, std::size_t i) {
   const double count = static_cast<double>(f.targets.size());
   const double height = (kSideHeight - (count - 1.0) * kBelowField) / count;
   return {kFieldLeft, kTop + static_cast<double>(i) * (height + kBelowField), kFieldWidth, height};
 }
 
-/// Target beside reconstruction of each patch, all on one scale.
+/// Draws target and reconstruction of each patch side by side, all on one scale.
 void draw_fields(Canvas& canvas, const SceneFigure& f) {
   if (f.targets.empty()) {
     canvas.text(Vec2(kFieldLeft, kTop + 20.0), "no hand in the smoke",
@@ -205,7 +208,7 @@ void draw_fields(Canvas& canvas, const SceneFigure& f) {
   }
 }
 
-/// The page is as high as what stands on it.
+/// The height of the page, depending on its content.
 double page_height(const SceneFigure& f) {
   const Box side = figure::fitted(kSideSpace, side_extent(f));
   double bottom = side.y + side.height + kBelowSide;

@@ -22,17 +22,17 @@ using figure::TextStyle;
 
 constexpr double kHeight = 260.0;  // of 100 % [points]
 constexpr double kLeft = 74.0, kRight = 62.0, kTop = 34.0, kMargin = 14.0;
-constexpr double kLine = 15.0, kSmallLine = 11.5;  // from one line of text to the next
+constexpr double kLine = 15.0, kSmallLine = 11.5;  // line spacing
 constexpr double kGroupGap = 26.0, kLeastSlot = 46.0, kMostName = 220.0;
-constexpr double kDot = 4.0;       // height of the dots that stand side by side
-constexpr double kDotsPart = 0.5;  // of a bar's slot: room for its dots
+constexpr double kDot = 4.0;       // height within which dots are placed side by side
+constexpr double kDotsPart = 0.5;  // share of a bar's slot available for its dots
 constexpr TextStyle kTitle{.size = 14.0, .bold = true};
 constexpr TextStyle kName{.size = 11.5, .align = Align::Centre};
 constexpr TextStyle kKey{.size = 11.5, .bold = true};
 constexpr TextStyle kSmall{.size = 9.5, .align = Align::Centre};
 constexpr TextStyle kNote{.size = 9.5, .colour = figure::kFaintInk};
 
-/// Lines of words that are no wider than `width`.
+/// Wraps a text into lines that are no wider than `width`.
 std::vector<std::string> lines_of(Canvas& canvas, const std::string& text, double width,
                                   const TextStyle& style) {
   std::vector<std::string> lines;
@@ -48,7 +48,7 @@ std::vector<std::string> lines_of(Canvas& canvas, const std::string& text, doubl
   return lines;
 }
 
-/// Dots that are as high as each other, nearly, by their height.
+/// Groups dots of nearly equal height, by height.
 std::map<long, std::vector<double>> stacks_of(const ShareBar& bar) {
   std::map<long, std::vector<double>> out;
   for (const double dot : bar.dots) out[std::lround(dot * kHeight / kDot)].push_back(dot);
@@ -99,7 +99,8 @@ class ShareDrawing {
     return group_x(g) + 0.5 * (group_width_ - bars_width()) + slot_ * static_cast<double>(bar);
   }
 
-  /// Makes slots as wide as the most dots side by side need, smaller dots where there are many.
+  /// Sets the width of slots by the largest number of dots side by side; many dots are drawn
+  /// smaller.
   void lay_dots() {
     std::size_t most = 1;
     for (const ShareGroup& group : figure_.groups) {
@@ -129,7 +130,7 @@ class ShareDrawing {
     box_.width = group_width_ * static_cast<double>(figure_.groups.size());
   }
 
-  /// The names of the bars in lines above the picture.
+  /// Lays out the names of the bars in lines above the picture.
   void lay_key(Canvas& ruler, double page) {
     const double most = page - 2.0 * kMargin;
     double x = kMargin;
@@ -184,7 +185,7 @@ class ShareDrawing {
     canvas_->text(Vec2(box_.x + box_.width + 6.0, y + 4.0), "chance", {.size = 10.5});
   }
 
-  /// Its name and brackets.
+  /// Draws a group's name and brackets.
   void group(std::size_t g) {
     const ShareGroup& of = figure_.groups[g];
     const double middle = group_x(g) + 0.5 * group_width_;
@@ -197,7 +198,7 @@ class ShareDrawing {
     }
   }
 
-  /// Calls draw(bar, which of its group, left end of its slot) for all bars.
+  /// Calls draw(bar, index in its group, left end of its slot) for all bars.
   template <class Draw>
   void for_each_bar(const Draw& draw) {
     for (std::size_t g = 0; g < figure_.groups.size(); ++g) {
@@ -217,7 +218,7 @@ class ShareDrawing {
                   figure::number_text(100.0 * of.share, 1), kSmall);
   }
 
-  /// The interval and the dots.
+  /// Draws the interval and the dots.
   void mark(const ShareBar& of, std::size_t i, double x) {
     const double at = x + 0.22 * slot_;
     const std::array<Vec2, 2> interval{Vec2(at, y_of(of.low)), Vec2(at, y_of(of.high))};

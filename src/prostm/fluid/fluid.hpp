@@ -32,8 +32,8 @@ struct SmokeInflow {
   /// eddy viscosity ν, the same everywhere [m²/s]; 0: none (F13). Far above that of air, 1.5e-5: it
   /// stands for the small eddies of a turbulent jet, and keeps thin jets steady.
   double viscosity = 0.0;
-  /// up to this height above the floor each jet runs as in a tube, whatever moves the air beside it
-  /// [m]; 0: not guided (F14). Where a hand comes lower the tube ends 50 mm below it.
+  /// up to this height above the floor each jet flows as in a tube, whatever moves the air around
+  /// it [m]; 0: not guided (F14). If a hand is lower, the tube ends 50 mm below it.
   double guide_height = 0.0;
   double guide_time = 0.1;  ///< time constant with which the tube holds a jet [s]
 };
@@ -56,8 +56,8 @@ struct FluidSettings {
   int cells = 64;       ///< cells along each edge of the box, kLeastCells to kMostCells
   double width = 0.36;  ///< edge of the box [m]; it stands on the array's plane, centred, until
                         ///< move_box()
-  /// a step is so many of the fluid, each with its pressure solve; all but the last meet the hands
-  /// of the step before. Air passes a finger in less than a step of 20 ms.
+  /// fluid steps per world step, each with its own pressure solve; all but the last use the hands
+  /// of the previous world step. Air passes a finger in less than a step of 20 ms.
   int substeps = 1;
   /// weight of the pressure at the end of a particle's path, (F17); the rest acts at its start.
   /// 1: implicit, with an error of the first order in the step
@@ -91,7 +91,7 @@ struct FluidStats {
   double pressure_error = 0;
   double max_speed = 0;  ///< [cells per sub-step]
   int solid_cells = 0;
-  /// a non-finite (or absurd, above 10⁶ m/s) value came up: the state was set to rest
+  /// a value was not finite, or absurd (above 10⁶ m/s): the state was set to rest
   bool reset = false;
   double advect = 0, hand = 0, solve = 0, total = 0;  ///< [s]
 };
@@ -107,15 +107,15 @@ class Fluid {
   const GridShape& grid() const;
   const FluidSettings& settings() const;
 
-  /// Blows another way from the next step on. Allocates nothing unless there are more jets than
-  /// ever before. @pre between steps; within the bounds that the constructor holds.
+  /// Replaces the inflow from the next step on. Allocates nothing unless there are more jets than
+  /// ever before. @pre between steps; within the bounds that the constructor checks.
   void set_inflow(const SmokeInflow& inflow);
 
-  /// Moves the box by whole cells, and carries the flow over: what is new takes the values of the
-  /// nearest cell that there was. A box that moves by half of its edge or more begins anew at rest.
-  /// pressure() and fluid_cells() are of the old place until meet(). Allocates nothing.
-  /// @pre between prepare() and meet(), where the last pressure has acted and the hands of the step
-  /// before are taken away; or before the first step.
+  /// Moves the box by whole cells and carries the flow over: new cells get the values of the
+  /// nearest old cell. A box that moves by half of its edge or more restarts at rest. pressure()
+  /// and fluid_cells() refer to the old place until meet(). Allocates nothing.
+  /// @pre between prepare() and meet(), when the last pressure has acted and the previous step's
+  /// hands are removed; or before the first step.
   void move_box(const CellShift& by) noexcept;
 
   /// Advances by dt [s] with the hands of `raster` (made for grid()): docs/design/fluid.md.
@@ -123,18 +123,18 @@ class Fluid {
   /// finite, resets like a non-finite state.
   FluidStats step(double dt, const HandRaster& raster) noexcept;
 
-  /// The same step in three parts, so that the hands may come late and their pressure is available
-  /// early. step() calls the three in turn, so results agree to the bit. prepare() does what needs
-  /// no hand (advection and forces); meet() places the hands and solves for the pressure, after
-  /// which pressure(), fluid_cells() and smoke_row() are of this step; settle() projects the
-  /// velocity, leaves the state for the next step and measures. @pre called in this order.
+  /// The same step in three parts, so that the hands are needed late and their pressure is
+  /// available early. step() calls the three in turn, so results agree to the bit. prepare() does
+  /// the work that needs no hands (advection and forces); meet() places the hands and solves for
+  /// the pressure, after which pressure(), fluid_cells() and smoke_row() are those of this step;
+  /// settle() projects the velocity and computes the statistics. @pre called in this order.
   void prepare(double dt) noexcept;
   void meet(const HandRaster& raster) noexcept;
   FluidStats settle() noexcept;
 
   /// Fluid pressure at cell centres [Pa], 0 in cells without fluid; cell_count() values, index as
-  /// in GridShape. With sub-steps or theta < 1 it is the mean of what acts over the step: the last
-  /// solve alone would swing from step to step about it.
+  /// in GridShape. With sub-steps or theta < 1 it is the mean pressure over the step: the result of
+  /// the last solve alone oscillates about it from step to step.
   std::span<const float> pressure() const;
   /// 1 for cells whose centre is in the fluid (not inside a hand).
   std::span<const std::uint8_t> fluid_cells() const;

@@ -23,9 +23,9 @@ class HandShape {
  public:
   HandShape() = default;
   explicit HandShape(const Hand& hand) { set(hand); }
-  /// Builds the surface. Trackers report the flesh of the fingers well, but metacarpals as thin as
-  /// fingers; so each radius in the palm is at least a share of the palm's own, (H12) of
-  /// docs/design/hands.md.
+  /// Builds the surface. Trackers report the thickness of fingers well, but a palm as thin as
+  /// fingers. So each radius in the palm has a lower bound, a fraction of the palm joint's radius,
+  /// (H12) of docs/design/hands.md.
   void set(const Hand& hand) noexcept;
 
   SurfacePoint query(const Vec3& p) const noexcept;

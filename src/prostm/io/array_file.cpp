@@ -25,7 +25,7 @@ Directivity read_directivity(const JsonNode& node) {
   for (const Directivity kind : kKinds) {
     if (name == directivity_name(kind)) return kind;
   }
-  node.fail(R"(is no directivity; it must be "piston", "t4010a1" or "omni")");
+  node.fail(R"(is not a directivity; it must be "piston", "t4010a1" or "omni")");
 }
 
 void read_amplitude(const JsonNode& root, TransducerArray& array) {
@@ -103,16 +103,16 @@ TransducerArray array_from_json(std::string_view text, const std::string& file) 
   root.allow_only({"format", "name", "frequency_hz", "radius_mm", "directivity", "amplitude_pa_m",
                    "amplitude_interval_pa_m", "transducers_mm", "normals"});
   TransducerArray array;
-  array.name = root.at("name", "what the array is called").text();
+  array.name = root.at("name", "the name of the array").text();
   array.frequency = root.at("frequency_hz", "the carrier's frequency in Hz").number(20e3, 100e3);
   array.radius = from_milli(root.at("radius_mm", "a transducer's radius in mm").number(0.1, 50.0));
   array.directivity = read_directivity(root.at("directivity", R"("piston", "t4010a1" or "omni")"));
   read_amplitude(root, array);
-  read_positions(root.at("transducers_mm", "an array of places [x, y, z]"), array);
+  read_positions(root.at("transducers_mm", "an array of positions [x, y, z]"), array);
   array.normal.assign(array.position.size(), Vec3::UnitZ());
   if (root.has("normals")) read_normals(root.at("normals", ""), array);
 
-  // what concerns more than one value
+  // checks that involve several values
   try {
     validate(array);
   } catch (const std::invalid_argument& e) {

@@ -18,17 +18,17 @@ std::vector<Vec2> read_points(const JsonNode& node) {
   return points;
 }
 
-/// A closed line: the first point stands again at the end.
+/// Reads a closed line, whose first point is repeated at the end.
 std::vector<Vec2> read_loop(const JsonNode& node) {
   std::vector<Vec2> points = read_points(node);
   if (points.size() < 2 || points.front() != points.back()) {
-    node.fail("must be a closed line of at least two points, the first again at the end");
+    node.fail("must be a closed line of at least two points, the first repeated at the end");
   }
   points.pop_back();
   return points;
 }
 
-/// A tour through clusters, each point of which is the cluster next to it.
+/// A tour as clusters: each point is replaced by the nearest cluster.
 std::vector<int> as_tour(const std::vector<Vec2>& loop, const std::vector<Vec2>& clusters) {
   std::vector<int> tour;
   for (const Vec2& x : loop) {

@@ -1,5 +1,6 @@
 #pragma once
-/// The paper's Fig. 2 as data: its clusters, tours, paths and reconstruction, read off the figure.
+/// The paper's Fig. 2 as data: clusters, tours, paths and reconstruction, digitised from the
+/// figure.
 
 #include <string>
 #include <string_view>
@@ -18,9 +19,9 @@ struct DigitisedFigure {
 };
 
 /// Reads {"fig2": {"clusters_mm", "cluster_value_norm", "initial_tour_mm", "split_paths_mm",
-/// "refined_paths_mm", "recon_norm"}}: points [x, y] in mm, closed tours with the first point again
-/// at the end, values over the colour bar.
-/// @param target the figure's panel (a), of the same raster.  @throws InputError with a sentence.
+/// "refined_paths_mm", "recon_norm"}}: points [x, y] in mm, closed tours with the first point
+/// repeated at the end, values relative to the colour bar.
+/// @param target the figure's panel (a), on the same raster. @throws InputError with a sentence.
 DigitisedFigure digitised_figure_from_json(std::string_view text, const std::string& name,
                                            const TargetField& target, const GainLaw& gain,
                                            double speed);

@@ -33,7 +33,7 @@ FociFile foci_from_json(std::string_view text, const std::string& file) {
   for (std::size_t m = 0; m < count; ++m) {
     const JsonNode focus = foci.at(m);
     focus.allow_only({"position_mm", "pressure_pa"});
-    const Vec3 mm = focus.at("position_mm", "a place [x, y, z] in mm, z from the array up")
+    const Vec3 mm = focus.at("position_mm", "a position [x, y, z] in mm, z upwards from the array")
                         .vec3(-kFarthestMm, kFarthestMm);
     out.position.push_back(from_milli(mm));
     out.pressure.push_back(

@@ -1,5 +1,5 @@
 #pragma once
-/// Focal points in files, prostm-foci/1, and what an array is driven with to make them.
+/// Focal points in files (prostm-foci/1), and the drives of an array that produce them.
 
 #include <string>
 #include <string_view>
@@ -15,14 +15,14 @@ struct FociFile {
   std::vector<double> pressure;  ///< wanted acoustic pressure [Pa, rms]
 };
 
-/// @throws InputError with a sentence: what is not JSON, missing, or out of bounds; no focal point,
-/// or more than kMaxTransducers.
+/// Reads focal points. @throws InputError: not JSON, a missing or out-of-bounds value; no focal
+/// point, or more than kMaxTransducers.
 FociFile foci_from_json(std::string_view text, const std::string& file);
-/// The same from a file. @throws InputError also when it cannot be read.
+/// Reads a file of focal points. @throws InputError also if it cannot be read.
 FociFile read_foci(const std::string& path);
 
-/// prostm-drives/1: the drives in the array's order, what they reach, and all that is needed to
-/// compute p = Σ amplitude · drive · D(θ)/r · e^{i(kr + phase) − αr} again.
+/// prostm-drives/1: the drives in the array's order, the pressures that they reach, and everything
+/// needed to recompute p = Σ amplitude · drive · D(θ)/r · e^{i(kr + phase) − αr}.
 std::string drives_to_json(const TransducerArray& array, const Medium& medium, const FociFile& foci,
                            const FocusSolution& solution);
 

@@ -79,7 +79,7 @@ FocalPath read_path(const JsonNode& node) {
   constexpr double kMinSpeed = 0.001, kMaxSpeed = 1000.0;
   path.speed = node.at("speed_m_s", "the speed of the focal point").number(kMinSpeed, kMaxSpeed);
 
-  // a lap takes length / speed, or longer on uneven skin
+  // a loop takes length / speed, or longer on uneven skin
   path.period = path.length / path.speed;
   if (node.has("period_ms")) {
     const JsonNode period_ms = node.at("period_ms", "the time of a lap");
@@ -154,7 +154,7 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
                          {"limit", extras.power->limit}};
   }
 
-  // how it came about and how good it is
+  // statistics and quality
   if (extras.stats != nullptr) {
     document.update(quantities_to_json(*extras.stats));
   }
@@ -170,7 +170,7 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
 
   if (extras.warnings != nullptr) document["warnings"] = *extras.warnings;
 
-  // where it lies: what lifts the paths back to the skin
+  // plane and heights, needed to lift the paths back onto the skin
   document["plane"] = plane_json(target.X_DP);
   Json raster = Json::object();
   write_raster(target, raster);
@@ -201,7 +201,7 @@ PlanFile plan_from_json(std::string_view text, const std::string& name) {
         root.at("full_scale_pressure", "a number").number(0.0, kMaxFilePressure);
   }
 
-  // the raster's skin is where it has a height
+  // the raster has skin where it has a height
   const JsonNode raster = root.at("raster", "the raster with the heights of the skin");
   read_raster(raster, file.raster);
   const JsonNode heights = raster.at("height_mm", "an array of rows of heights in mm");

@@ -15,55 +15,55 @@ namespace prostm {
 
 struct PlayedPlan;
 
-/// The share of power of each focal point of a plan, all drawn at the same time.
+/// The share of power of each of a plan's simultaneous focal points.
 struct PowerShare {
-  double array = 0.0;     ///< of the array's power: 1 / number of paths
-  double pressure = 0.0;  ///< of full scale's radiation pressure, when all want the same, (E4a)
-  double limit = 0.0;     ///< largest Σ intensity² that the emission allows
+  double array = 0.0;     ///< share of the array's power: 1 / number of paths
+  double pressure = 0.0;  ///< share of full-scale pressure if all request the same, (E4a)
+  double limit = 0.0;     ///< largest Σ intensity² of the emission
 };
 
-/// How good a plan is, with all that the numbers depend on.
+/// The quality of a plan, with all parameters of the metrics.
 struct PlanQuality {
   double sigma = 0.0;                ///< of Eq. (1) [m]
-  double full_scale_pressure = 0.0;  ///< that it is played with [unit of the target]
-  Metrics played, planned;           ///< of what is played, and with the plan's own pressures
+  double full_scale_pressure = 0.0;  ///< full scale used for playing [unit of the target]
+  Metrics played, planned;           ///< metrics as played, and with the plan's own pressures
   struct At {
     double sigma;  ///< [m]
     Metrics played;
   };
-  std::vector<At> at;  ///< what is played at other widths of the focal point
+  std::vector<At> at;  ///< metrics as played, at other widths of the focal point
 };
 
-/// The content of a plan file besides the paths or foci.
+/// The content of a plan file in addition to the paths or foci.
 struct PlanFileExtras {
-  Method method = Method::ProStm;    ///< am: the plan holds foci, and they are written
-  std::optional<Preset> preset;      ///< writes "preset", when given
-  const PlanStats* stats = nullptr;  ///< writes "stage_us" and the counts, when given
-  const Metrics* metrics = nullptr;  ///< writes "metrics", when given, and nothing on what they are
-  const PlanQuality* quality = nullptr;  ///< writes "metrics" and all that they depend on
+  Method method = Method::ProStm;    ///< am: the plan has foci, which are written
+  std::optional<Preset> preset;      ///< written as "preset" if given
+  const PlanStats* stats = nullptr;  ///< written as "stage_us" and the counts if given
+  const Metrics* metrics = nullptr;  ///< written as "metrics" if given, without their parameters
+  const PlanQuality* quality = nullptr;  ///< written as "metrics" with all parameters, if given
   const std::vector<Control>* controls = nullptr;
-  const PowerShare* power = nullptr;                   ///< writes "power", when given
-  const std::vector<std::string>* warnings = nullptr;  ///< writes "warnings", when given
-  const PlayedPlan* played = nullptr;                  ///< writes "played", when given
-  std::string program;  ///< writes "prostm", the program's version, when not empty
+  const PowerShare* power = nullptr;                   ///< written as "power" if given
+  const std::vector<std::string>* warnings = nullptr;  ///< written as "warnings" if given
+  const PlayedPlan* played = nullptr;                  ///< written as "played" if given
+  std::string program;  ///< version of the program, written as "prostm" if not empty
 };
 
-/// Speeds and periods of each path as played and as planned, for files.
+/// Returns speeds and periods of each path, as played and as planned.
 nlohmann::ordered_json played_to_json(const PlayedPlan& played);
 
-/// @param target the field that was planned: its plane and heights are repeated in the file.
-/// @param settings empty: none are written.
+/// @param target the planned field; its plane and heights are included in the file. @param settings
+/// the settings to include; may be empty.
 std::string plan_to_json(const Plan& plan, const TargetField& target, const PlanFileExtras& extras,
                          const std::vector<SettingsGroup>& settings);
 
 struct PlanFile {
-  Method method = Method::ProStm;  ///< am where the file has foci
+  Method method = Method::ProStm;  ///< am if the file has foci
   Plan plan;
-  TargetField raster;  ///< plane and heights (pressure 0 where the file repeats none)
-  /// That the plan is played with [unit of the target]; 0 where the file has none.
+  TargetField raster;  ///< plane and heights (pressure 0 if the file contains none)
+  /// Full scale used for playing [unit of the target]; 0 if the file has none.
   double full_scale_pressure = 0.0;
 };
-/// @throws InputError with a sentence.
+/// Reads a plan. @throws InputError with a sentence.
 PlanFile plan_from_json(std::string_view text, const std::string& name);
 
 }  // namespace prostm

@@ -1,5 +1,5 @@
 #pragma once
-/// The numbers of a result in JSON.
+/// The quantities of a result as JSON.
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -8,8 +8,8 @@
 
 namespace prostm {
 
-/// {"name": value in the file's unit, …}, with an object for each group; what is not finite is
-/// null, or left out where it is optional.
+/// {"name": value in the file's unit, …}, with an object for each group; non-finite values are
+/// null, or omitted if optional.
 template <class S>
 nlohmann::ordered_json quantities_to_json(const S& s) {
   auto document = nlohmann::ordered_json::object();

@@ -32,7 +32,7 @@ using recording::kHands;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr float kNanFloat = std::numeric_limits<float>::quiet_NaN();
 
-/// One group of tables, found by their names.
+/// A group of tables, accessed by name.
 class Group {
  public:
   bool create(hid_t file, const char* name, const std::vector<h5::Column>& columns) {
@@ -42,7 +42,7 @@ class Group {
     return ok;
   }
   bool has(const char* name) const { return tables_.count(name) != 0; }
-  /// One more table of the group.
+  /// Adds a table to the group.
   bool add(const h5::Column& column) {
     ok_ =
         tables_.emplace(column.name, h5::Table(group_.get(), column)).first->second.valid() && ok_;
@@ -73,7 +73,7 @@ std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
-/// 0 or the error.
+/// Syncs a file to disk. Returns 0 or the error.
 int sync(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return errno;
@@ -82,8 +82,8 @@ int sync(const std::string& path) {
   return error;
 }
 
-/// The name of a file that is being recorded: `path` + ".part.h5", where `path` is cut short if the
-/// file system takes no such long name.
+/// The name of a file that is being recorded: `path` + ".part.h5", with `path` shortened if the
+/// file system does not allow such a long name.
 std::string part_of(const std::string& path) {
   constexpr std::string_view kEnding = ".part.h5";
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
@@ -92,7 +92,7 @@ std::string part_of(const std::string& path) {
   std::string name = std::filesystem::path(path).filename().string();
   if (name.size() + kEnding.size() > most) {
     name.resize(most - kEnding.size());
-    // no half of a character of UTF-8
+    // do not split a UTF-8 character
     while (!name.empty() && (static_cast<unsigned char>(name.back()) & 0xc0U) == 0x80U)
       name.pop_back();
     if (!name.empty() && (static_cast<unsigned char>(name.back()) & 0x80U) != 0) name.pop_back();
@@ -109,14 +109,14 @@ void check_recording(const std::string& path) {
   if (kind == std::filesystem::file_type::regular ||
       kind == std::filesystem::file_type::not_found || kind == std::filesystem::file_type::none) {
     if (path.ends_with(".h5") || path.ends_with(".H5")) return;
-    throw InputError(path + " names no recording; it must end in .h5");
+    throw InputError(path + " is not a name for a recording; it must end in .h5");
   }
   throw InputError(path + " is not an ordinary file; name a file to record into");
 }
 
 struct Recorder::Impl {
   std::string path, part;
-  int error = 0;  // the first errno of the file's writes
+  int error = 0;  // first errno of a write to the file
   h5::Id file;
   Group frame, target, hand, plan, gate;
   std::int64_t frames = 0, patches = 0, cells = 0;
@@ -150,7 +150,7 @@ void Recorder::Impl::append_target(const TargetField& field) {
   }
   target.append("pose", pose, 1);
 
-  // skin and pressure in one: no skin is NaN
+  // skin and pressure in one array: NaN means no skin
   std::vector<double> pressure = field.pressure;
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (field.skin[i] == 0) pressure[i] = kNan;
@@ -164,8 +164,8 @@ void Recorder::Impl::append_target(const TargetField& field) {
   cells += static_cast<std::int64_t>(field.size());
 }
 
-/// Appends a value a cell, or none. The table is there from the first patch that has some; what was
-/// before has none.
+/// Appends optional values, one per cell. The table is created at the first patch that has values;
+/// earlier patches have none.
 void Recorder::Impl::append_optional(const h5::Column& column, const TargetField& field,
                                      const std::vector<double>& values) {
   const bool first = !target.has(column.name);
@@ -256,7 +256,7 @@ void Recorder::Impl::append_plan(const RecordedPlan* made, std::size_t patches_n
   append_how(made, patches_now);
 }
 
-/// Appends how a plan was made, and what its reconstruction depends on.
+/// Appends statistics of a plan, and the parameters of its reconstruction.
 void Recorder::Impl::append_how(const RecordedPlan* made, std::size_t patches_now) {
   std::vector<double> stage, sigma(kMaxPatches, kNan);
   std::vector<std::int32_t> counts;
@@ -326,8 +326,8 @@ bool Recorder::Impl::close_all() {
 
 void Recorder::Impl::give_up() {
   close_all();
-  // what was flushed before may still be a recording; a broken file is not left behind
-  std::string rest = fmt::format("what was recorded until then is in {}", part);
+  // flushed data may still be a valid recording; a damaged file is deleted
+  std::string rest = fmt::format("the recording up to then is in {}", part);
   try {
     RecordingReader reader(part);
   } catch (const InputError&) {
@@ -344,7 +344,7 @@ Recorder::Recorder(const std::string& path, const std::vector<SettingsGroup>& se
   Impl& r = *impl_;
   r.path = path;
   r.part = part_of(path);
-  check_recording(path);  // HDF5 does not say why a file cannot be created
+  check_recording(path);  // HDF5 does not report why a file cannot be created
   r.file = h5::create_file(r.part, r.error);
   const hid_t file = r.file.get();
   const bool ok = r.file.valid() && h5::write_text(file, "format", "prostm-recording/1") &&
@@ -367,7 +367,7 @@ Recorder::~Recorder() {
   try {
     close();
   } catch (const InputError&) {
-    // a destructor has nobody to tell; who wants to know calls close()
+    // a destructor cannot report errors; call close() for that
   }
 }
 
@@ -384,8 +384,7 @@ void Recorder::append(const TargetFrame& frame, const HandFrame& hands, const Re
   r.append_plan(plan, frame.patches.size());
   r.append_gate(gate);
 
-  // every second of data reaches the file; time that runs backwards is a recording that starts
-  // again
+  // flush after every second of data; time that decreases is a recording that starts again
   if (r.frames++ == 0) r.flushed_at = frame.time;
   bool ok = r.ok();
   if (ok && std::abs(frame.time - r.flushed_at) >= 1.0) {

@@ -14,43 +14,43 @@
 
 namespace prostm {
 
-/// A plan of a recording, and what its reconstruction depends on.
+/// A plan of a recording, with the parameters of its reconstruction.
 struct RecordedPlan {
   Plan plan;
   PlanStats stats;
-  double full_scale_pressure = 0.0;            ///< rendered, at intensity 1 [Pa]
-  std::array<double, kMaxPatches> sigma = {};  ///< σ that each patch was planned with [m]
+  double full_scale_pressure = 0.0;            ///< rendered pressure at intensity 1 [Pa]
+  std::array<double, kMaxPatches> sigma = {};  ///< σ used for planning each patch [m]
 };
 
-/// Tries whether a recording could be made there, before the work that fills it. @throws
-/// InputError: as check_writable, no ordinary file, or a name that does not end in .h5.
+/// Checks early that a recording can be made at `path`. @throws InputError: as check_writable(),
+/// not an ordinary file, or a name that does not end in .h5.
 void check_recording(const std::string& path);
 
 /// Writes a recording frame by frame into `path` + ".part.h5" and renames it at close(); flushed
-/// every second of data, so that a killed run leaves a file that opens. Earliest HDF5 file format.
-/// The layout, units and attributes are in docs/guides/recordings.md.
+/// after every second of data, so that a killed run leaves a readable file. Uses the earliest HDF5
+/// file format. Layout, units and attributes are described in docs/guides/recordings.md.
 class Recorder {
  public:
-  /// @param settings kept as an attribute. @throws InputError as check_recording.
+  /// @param settings stored as an attribute. @throws InputError as check_recording.
   Recorder(const std::string& path, const std::vector<SettingsGroup>& settings);
-  ~Recorder();  ///< closes like close(), but keeps quiet about errors
+  ~Recorder();  ///< closes like close(), but ignores errors
 
-  /// Appends a frame: one group entry per target patch, the hands (frame D), and the plan when
-  /// there is one (its points and pressures, padded with NaN to kMaxPathPoints), and what a gate
-  /// said of the frame, if one did. @throws InputError when the disk is full.
+  /// Appends a frame: one entry per target patch, the hands (in D), the plan, if any (points and
+  /// pressures, padded with NaN to kMaxPathPoints), and the gate's verdict, if any. @throws
+  /// InputError if the disk is full.
   void append(const TargetFrame& frame, const HandFrame& hands, const RecordedPlan* plan,
               const std::optional<GateResult>& gate = {});
   /// Writes an attribute of the whole recording, e.g. the run's summary.
   void set_attribute(const std::string& name, const std::string& value);
   void close();
-  bool open() const;  ///< neither closed nor given up on a full disk
+  bool open() const;  ///< neither closed nor stopped by a full disk
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads the targets and plans of a recording, each when it is asked for.
+/// Reads the targets and plans of a recording on request.
 class RecordingReader {
  public:
   /// @throws InputError: not a recording, truncated, of another version, open for writing.
@@ -58,14 +58,15 @@ class RecordingReader {
   ~RecordingReader();
   int frames() const;
   std::span<const double> times() const;  ///< time of each frame [s]
-  /// Returns a text of the whole recording, e.g. "scene"; empty if it is absent.
+  /// Returns a text attribute of the recording, e.g. "scene"; empty if absent.
   std::string attribute(const char* name) const;
-  /// @throws InputError for a frame that does not exist or is broken.
+  /// Returns the target of a frame. @throws InputError for a frame that does not exist or is
+  /// damaged.
   TargetFrame frame(int i) const;
-  /// Returns the plan made in a frame, if one was made. @throws InputError as frame() does.
+  /// Returns the plan made in a frame, if any. @throws InputError as frame().
   std::optional<RecordedPlan> plan(int i) const;
-  /// Returns what the gate said of a frame; nothing if it said nothing, or if an earlier version
-  /// recorded it. @throws InputError as frame() does.
+  /// Returns the gate's verdict on a frame; nothing if there was none, or in recordings of earlier
+  /// versions. @throws InputError as frame().
   std::optional<GateResult> gate(int i) const;
 
  private:

@@ -28,7 +28,7 @@ bool is_number(double x) {
   return std::isfinite(x) && x >= 0.0;
 }
 
-/// Whether a path can be drawn on one of so many patches.
+/// Whether a path is valid on one of `patches` patches.
 bool is_path(const FocalPath& path, int patches) {
   return !path.points.empty() && path.patch >= 0 && path.patch < patches && path.speed > 0.0 &&
          is_number(path.speed) && is_number(path.length) && is_number(path.period) &&
@@ -63,7 +63,7 @@ struct RecordingReader::Impl {
           "gzip, in Python: group.create_dataset(name, data=old[()], compression=\"gzip\")",
           path, filter));
     }
-    throw InputError(path + " is broken or cut off; it must be a recording of prostm");
+    throw InputError(path + " is damaged or truncated; it must be a recording of prostm");
   }
   template <class T>
   void read(const char* name, hid_t type, const std::vector<hsize_t>& shape, std::size_t row_values,
@@ -71,8 +71,8 @@ struct RecordingReader::Impl {
     out.resize(count * row_values);
     if (!h5::read_rows(file.get(), name, type, shape, 0, count, out.data())) broken();
   }
-  /// Returns the values of one row of a dataset of a group, as the layout's columns list it.
-  /// @param what cannot be read without it.
+  /// Returns one row of a dataset of a group, with the shape listed in the layout's columns.
+  /// @param what the data that cannot be read without it.
   template <class T>
   std::vector<T> row(const char* group, const char* what, const std::vector<h5::Column>& columns,
                      const std::string& name, std::size_t i) const;
@@ -82,9 +82,9 @@ struct RecordingReader::Impl {
   }
   template <class T>
   std::vector<T> gate_row(const std::string& name, std::size_t i) const {
-    return row<T>("/gate/", "what its gate said", recording::gate_columns(), name, i);
+    return row<T>("/gate/", "the verdicts of its gate", recording::gate_columns(), name, i);
   }
-  /// Whether the plans have a table that earlier versions did not write.
+  /// Whether the plans have a table that is missing in recordings of earlier versions.
   bool has_plan_table(const char* name) const {
     return H5Lexists(file.get(), ("/plan/" + std::string(name)).c_str(), H5P_DEFAULT) > 0;
   }
@@ -151,7 +151,7 @@ void RecordingReader::Impl::read_index() {
   check_references();
 }
 
-/// Whether each frame's patches are in the tables and say that they are of that frame.
+/// Whether each frame's patches are in the tables and refer back to that frame.
 bool RecordingReader::Impl::is_mutual() const {
   for (std::size_t i = 0; i < time.size(); ++i) {
     for (std::int32_t k = 0; k < patches[i]; ++k) {
@@ -162,8 +162,8 @@ bool RecordingReader::Impl::is_mutual() const {
   return true;
 }
 
-/// Whether the patches are those of a recording from its first on, so that places in the tables are
-/// what they were.
+/// Whether the patches include those of the recording from the first on, so that indices into the
+/// tables are unchanged.
 bool RecordingReader::Impl::has_all_patches() const {
   std::int64_t end = 0;
   for (std::size_t k = 0; k < offset.size(); ++k) {
@@ -173,8 +173,8 @@ bool RecordingReader::Impl::has_all_patches() const {
   return true;
 }
 
-/// Checks that what belongs to a frame is its own. Programs that cut frames out of a recording
-/// leave the references as they were: they still hold if all patches stay.
+/// Checks the references between frames and patches. Programs that cut frames out of a recording
+/// leave the references unchanged: these stay valid if all patches are kept.
 void RecordingReader::Impl::check_references() const {
   const auto all = static_cast<std::int64_t>(offset.size());
   const long long cells = h5::row_count(file.get(), "/target/pressure");
@@ -193,8 +193,8 @@ void RecordingReader::Impl::check_references() const {
   if (inside && (is_mutual() || has_all_patches())) return;
   throw InputError(
       path +
-      ": what its tables hold for a frame is not that frame's, as after another program cut frames "
-      "out; cut /frame, /hand, /plan and /gate alike and keep /target whole "
+      ": its tables are inconsistent, probably because another program cut frames out; "
+      "cut /frame, /hand, /plan and /gate alike and keep /target whole "
       "(docs/guides/recordings.md)");
 }
 
@@ -214,7 +214,7 @@ TargetField RecordingReader::Impl::read_patch(std::size_t i) const {
     }
   }
 
-  // rasters stand one after another
+  // rasters are stored one after another
   const auto first = static_cast<hsize_t>(offset[i]), count = static_cast<hsize_t>(cells);
   if (!h5::read_rows(file.get(), "/target/pressure", H5T_NATIVE_DOUBLE, {}, first, count,
                      field.pressure.data()) ||
@@ -232,8 +232,8 @@ TargetField RecordingReader::Impl::read_patch(std::size_t i) const {
   return field;
 }
 
-/// Reads a value a cell, if the recording has some and the patch is not NaN on all its skin.
-/// @param first cell of the patch.
+/// Reads optional values, one per cell; empty if the recording has none, or the patch is NaN on all
+/// its skin. @param first the first cell of the patch.
 std::vector<double> RecordingReader::Impl::read_optional(const char* name, hsize_t first,
                                                          const TargetField& field) const {
   if (H5Lexists(file.get(), name, H5P_DEFAULT) <= 0) return {};
@@ -328,7 +328,7 @@ RecordingReader::RecordingReader(const std::string& path) : impl_(std::make_uniq
     if (lock == LockResult::Held)
       throw InputError(path + " is open for writing in another program; close it there first");
     if (lock == LockResult::Unavailable) impl_->file = h5::open_to_read(path, false);
-    // the environment takes precedence over what the program asks of HDF5
+    // the environment takes precedence over the program's request to HDF5
     if (!impl_->file.valid() && lock == LockResult::Unavailable && asks_for_locks()) {
       throw InputError(path +
                        " is on a file system without locks, and HDF5_USE_FILE_LOCKING in the "

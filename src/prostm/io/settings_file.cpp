@@ -27,7 +27,7 @@ bool is_among(const std::vector<std::string>& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Sets the fields that a table gives.
+/// Sets the fields given in a table.
 class TomlReader : public SettingsWriter {
  public:
   TomlReader(const toml::table& table, const std::string& file, const std::string& group)
@@ -48,7 +48,7 @@ class TomlReader : public SettingsWriter {
     if (!node->is_integer()) fail(s.name, *node, "must be a whole number");
     const std::int64_t x = node->as_integer()->get();
     if (x < std::numeric_limits<int>::min() || x > std::numeric_limits<int>::max()) {
-      fail(s.name, *node, "must lie within 32 bits");
+      fail(s.name, *node, "must fit into 32 bits");
     }
     check_bounds(s, *node, static_cast<int>(x));
     value = static_cast<int>(x);
@@ -135,8 +135,8 @@ void read_group(const toml::table& table, const SettingsGroup& group, const std:
   group.write(reader);
 }
 
-/// @throws InputError that no group has this name; a setting that stands outside its group is told
-/// where it belongs.
+/// Throws an InputError that no group has this name; for a setting outside its group, it names the
+/// group.
 [[noreturn]] void refuse_group(const toml::key& key, const toml::node& node,
                                const std::vector<SettingsGroup>& groups,
                                const std::vector<std::string>& others, const std::string& file) {
@@ -148,7 +148,7 @@ void read_group(const toml::table& table, const SettingsGroup& group, const std:
   }
   const std::string where = fmt::format("{}, line {}", file, key.source().begin.line);
   if (!node.is_table() && !homes.empty()) {
-    throw InputError(fmt::format("{}: \"{}\" stands outside a group of settings; did you mean {}?",
+    throw InputError(fmt::format("{}: \"{}\" is outside a group of settings; did you mean {}?",
                                  where, key.str(), fmt::join(homes, " or ")));
   }
   throw InputError(fmt::format("{}: there is no group of settings \"{}\"; {}", where,

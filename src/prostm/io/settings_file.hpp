@@ -1,5 +1,5 @@
 #pragma once
-/// Settings of every stage as TOML in, JSON out, through their visit() alone.
+/// Reads settings of all stages from TOML and writes them as JSON, using only their visit().
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -10,30 +10,30 @@
 
 namespace prostm {
 
-/// Sets what the file gives and leaves the rest. @throws InputError that names file, line and key:
-/// unknown group or key (with the nearest known one), a value of the wrong type, a name that
-/// the choice lacks, a number that is not finite or out of its bounds. @return the names of what it
-/// gives, "plan.sigma".
+/// Sets the values in the file and leaves the others unchanged. @throws InputError naming file,
+/// line and key: an unknown group or key (with the nearest known one), a value of the wrong type, a
+/// name that is not one of the choices, a number that is not finite or out of bounds. @return the
+/// names of the settings in the file, e.g. "plan.sigma".
 std::vector<std::string> read_settings(const std::string& path,
                                        const std::vector<SettingsGroup>& groups);
-/// @param inside the table that holds the groups, {"method", "am"}; empty: the document.
-/// @param others tables beside the groups that are read elsewhere.
+/// The same from text. @param inside table that contains the groups, e.g. {"method", "am"}; empty:
+/// the document. @param others other tables, which are read elsewhere.
 std::vector<std::string> settings_from_toml(std::string_view text, const std::string& name,
                                             const std::vector<SettingsGroup>& groups,
                                             const std::vector<std::string>& inside = {},
                                             const std::vector<std::string>& others = {});
 
-/// Returns the line of a key or table of the document, {"method", "am", "plan"}; 0 where it is
-/// missing. @throws InputError: no TOML.
+/// Returns the line of a key or table of the document, e.g. {"method", "am", "plan"}; 0 if it is
+/// missing. @throws InputError: not TOML.
 int line_in_toml(std::string_view text, const std::string& name,
                  const std::vector<std::string>& keys);
 
 /// Returns the names of the tables inside a table of the document, in the order of their lines;
-/// none where it is missing. @throws InputError: it, or something in it, is no table.
+/// empty if it is missing. @throws InputError: it, or one of its members, is not a table.
 std::vector<std::string> tables_in_toml(std::string_view text, const std::string& name,
                                         const std::string& table);
 
-/// {"plan": {"paths": 4, …}, …}
+/// Returns {"plan": {"paths": 4, …}, …}.
 nlohmann::ordered_json settings_to_json(const std::vector<SettingsGroup>& groups);
 
 }  // namespace prostm

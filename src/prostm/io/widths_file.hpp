@@ -1,5 +1,5 @@
 #pragma once
-/// How wide the focus of an array is, in files: prostm-widths/1.
+/// The widths of an array's focus in files: prostm-widths/1.
 
 #include <span>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace prostm {
 
-/// @param array its name.
+/// @param array name of the array.
 std::string widths_to_json(const std::string& array, std::span<const FocusWidthEntry> widths);
 
 }  // namespace prostm

@@ -88,7 +88,7 @@ Targets recorded_targets(const std::string& path, int frames) {
     const TargetField &first = targets.front(), &last = targets.back();
     if (last.rows != first.rows || last.cols != first.cols)
       throw InputError(fmt::format(
-          "{}, frame {}: the hand moved, and its raster is of another size", path, frame));
+          "{}, frame {}: the size of the raster changed, because the hand moved", path, frame));
   }
   return targets;
 }
@@ -98,8 +98,8 @@ void draw_ways(const std::string& path) {
   constexpr int kFrame = 50;
   Renderer renderer(usx_array(), fields::make(kDrawn[0], kFrame, kCells));
   MapFigure figure;
-  figure.title = "What an array puts on the skin at some time of the loop, and what is felt of it";
-  figure.scale = "over the largest";
+  figure.title = "Largest pressure of an array on the skin during the loop, and the percept";
+  figure.scale = "relative to the largest";
   figure.columns = static_cast<int>(kWays.size());
   for (const fields::Pattern pattern : kDrawn) {
     const TargetField target = fields::make(pattern, kFrame, kCells);

@@ -1,5 +1,5 @@
 #pragma once
-/// Compares the ways to render a target.
+/// Compares ways of rendering a target.
 
 #include <array>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace prostm::methods {
 
-/// The quantity that is made equal between ways before they are compared.
+/// The quantity that is equalised between ways before they are compared.
 enum class Equal { Drive, Power, Percept };
 
 /// Returns the factor for the square of a way's drives. Drive: the largest |q| becomes 1; Power: Σ
@@ -20,10 +20,10 @@ double factor_for(Equal equal, const Rendering& rendering, const Rendering& refe
 
 /// Targets of one raster, 200 mm or so above the array.
 using Targets = std::vector<TargetField>;
-/// Returns so many frames of each generated sequence.
+/// Returns `frames` frames of each generated sequence.
 Targets generated_targets(int frames);
-/// Returns so many frames of a recording's second half, when jets have settled on a still hand: the
-/// first patch of each. @throws InputError where a frame has no pressure, or another raster.
+/// Returns `frames` frames of a recording's second half, when jets have settled on a still hand:
+/// the first patch of each. @throws InputError if a frame has no pressure, or the raster changes.
 Targets recorded_targets(const std::string& path, int frames);
 
 /// Means over fields for one way of rendering.
@@ -36,12 +36,12 @@ struct Means {
   struct Level {
     Distribution pressure, percept, intensity, lobe, ghost;  ///< [Pa], [µm]
   };
-  std::array<Level, 3> level;  ///< by Equal; without values where a way has no drives
+  std::array<Level, 3> level;  ///< by Equal; without values if a way has no drives
 
   void add(const Rendering& r, const Rendering& reference);
 };
-/// Renders a target in every way, and adds the results to the means of each. @return false where
-/// one of them is not felt at all; then nothing is added.
+/// Renders a target in every way, and adds the results to the means of each. @return false if one
+/// of them has no percept (Rendering::felt_at_all); then nothing is added.
 bool add_ways(Renderer& renderer, const TargetField& target,
               std::array<Means, kWays.size()>& means);
 

@@ -41,7 +41,7 @@ Plan plan_by(Way way, const TargetField& target, double sigma) {
   return plan;
 }
 
-/// Samples the running plan, with full scale at its own largest pressure.
+/// Returns the samples of a plan's loop, with full scale at the plan's largest pressure.
 LoopSamples loop_of(const Plan& plan, const TargetField& target) {
   TargetFrame frame;
   frame.patches.push_back(target);
@@ -60,7 +60,8 @@ LoopSamples loop_of(const Plan& plan, const TargetField& target) {
   return loop_samples(lifted, settings, kRate);
 }
 
-/// Returns 1 Pa on all skin at the peak of the modulation, whose intensity is |sin|.
+/// Returns the pressure of the flat field: 1 Pa on all skin at the peak of the modulation, whose
+/// intensity is |sin|.
 std::vector<double> flat_loop(const TargetField& raster, int parts) {
   std::vector<double> out;
   for (int k = 0; k < parts; ++k) {

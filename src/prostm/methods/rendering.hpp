@@ -1,5 +1,5 @@
 #pragma once
-/// The pressure that each way to render a target puts on the skin, and the resulting percept.
+/// The pressure on the skin and the percept for each way of rendering a target.
 
 #include <memory>
 #include <string>
@@ -25,17 +25,17 @@ std::string to_string(Way way);
 /// pressures [Pa] and percepts [m] scale with the square of the drives.
 struct Rendering {
   Plan plan;
-  /// Whether its loop is short enough for the percept, is_felt(); if not, only the plan is there.
+  /// Whether the loop is short enough for the percept, is_felt(); if not, only the plan is set.
   bool felt_at_all = true;
   double mean_power = 0.0;  ///< mean of Σ |q|² over the loop; 0 for Flat
   PhysicalField field;
   FeltField felt;
-  Metrics of_model;              ///< of the plan by Eq. (1) with the paper's width
-  Metrics of_envelope, of_felt;  ///< of field.envelope and felt.percept
+  Metrics of_model;              ///< metrics of the plan by Eq. (1) with the paper's width
+  Metrics of_envelope, of_felt;  ///< metrics of field.envelope and felt.percept
   Ghosts ghosts;
 };
 
-/// Plans, plays and computes percepts. Caches its results for a loop's period.
+/// Plans, simulates the array and computes percepts. Caches the skin's response by loop period.
 class Renderer {
  public:
   Renderer(const TransducerArray& array, const TargetField& raster);

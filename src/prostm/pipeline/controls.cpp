@@ -43,13 +43,13 @@ const auto kJetPlaces = choices_of<JetPlace, 2>({"Over the array", "Under the ha
 const auto kParts = choices_of<PressurePart, 3>({"All", "Smoke alone", "Movement alone"});
 const auto kMethods = choices_of<Method, 2>({"PRO-STM", "AM"});
 const std::vector<ControlChoice> kPresets = preset_choices();
-const auto kSwitches = choices_of<SwitchAt, 2>({"At lap ends", "At once"});
+const auto kSwitches = choices_of<SwitchAt, 2>({"At loop ends", "At once"});
 const auto kWaveforms = choices_of<Waveform, 2>({"Raised cosine", "|sin|"});
 constexpr ControlChoice kSources[] = {
     {"scripted", "Scripted"}, {"study", "Study hand"}, {"recording", "Recording"},
     {"leap", "Leap tracker"}, {"openxr", "OpenXR"},    {"page", "None: only the page's"}};
 
-/// Place of a value in a list of choices; 0 when it is not there.
+/// Index of a value in a list of choices; 0 if it is not in the list.
 double place(std::span<const ControlChoice> choices, std::string_view value) {
   for (std::size_t i = 0; i < choices.size(); ++i)
     if (choices[i].value == value) return static_cast<double>(i);
@@ -60,7 +60,7 @@ std::string chosen(std::span<const ControlChoice> choices, double value) {
   return std::string(choices[static_cast<std::size_t>(value)].value);
 }
 
-// ---- when a control does something ----
+// ---- when a control has an effect ----
 
 bool always(const LiveSettings&) {
   return true;
@@ -80,7 +80,7 @@ bool has_smoke(const LiveSettings& s) {
 bool has_jets(const LiveSettings& s) {
   return has_smoke(s) && s.pipeline.scene != "still-air";
 }
-/// Whether the scene in this place of kScenes is one of the world's.
+/// Whether the scene at this index of kScenes belongs to the current world.
 bool has_scene(const LiveSettings& s, std::size_t place) {
   for (const WorldKind& kind : world_kinds()) {
     const std::size_t scenes = kind.scenes().size();
@@ -93,10 +93,10 @@ bool has_source(const LiveSettings& s, std::size_t place) {
   return std::find(s.sources.begin(), s.sources.end(), kSources[place].value) != s.sources.end();
 }
 
-// ---- what more than one line has to do ----
+// ---- setters shared by controls ----
 
-/// A clock runs, so a preset that takes a budget gets a share of an update. Presets that fit
-/// nothing do not take what is felt, either.
+/// Sets the preset. In real time, a preset with a time budget gets a share of an update. Presets
+/// without a fit do not support the felt weight, either.
 void set_preset(LiveSettings& s, double value) {
   PlanSettings& plan = s.pipeline.plan;
   plan.preset = static_cast<Preset>(value);
@@ -108,7 +108,7 @@ void set_paths(LiveSettings& s, double value) {
   s.pipeline.plan.paths = s.pipeline.am.foci = s.pipeline.emit.foci = static_cast<int>(value);
 }
 
-/// One width for all places, whatever the array's is.
+/// Sets one width for all places, instead of the array's own.
 void set_sigma(LiveSettings& s, double millimetres) {
   s.pipeline.plan.sigma = s.pipeline.am.sigma = 1e-3 * millimetres;
   s.pipeline.array_width = false;
@@ -166,13 +166,13 @@ std::vector<RunControl> smoke_controls() {
   list.choice(
       "scene", "Scene", kScenes, [](const S& s) { return place(kScenes, s.pipeline.scene); },
       [](S& s, double v) { s.pipeline.scene = chosen(kScenes, v); }, always,
-      "The smoke that the hand is held into, with the pressure that counts as full output there.",
+      "Smoke scene. Each scene has its own full scale: the pressure that gives full output.",
       has_scene);
   list.number(
       "jet_speed", "Emitter", "×", 0, 2, 0.05,
       [](const S& s) { return s.pipeline.fluid.jet_speed; },
       [](S& s, double v) { s.pipeline.fluid.jet_speed = v; }, has_jets,
-      "Speed of the smoke that the emitter blows, over the scene's own. Pressure goes with its "
+      "Speed of the smoke that the emitter blows, over the scene's own. Pressure varies with its "
       "square.");
   list.choice(
       "jet_place", "Jets", kJetPlaces,
@@ -183,7 +183,7 @@ std::vector<RunControl> smoke_controls() {
   list.number(
       "trim_rate", "Trim", "1/s", 0, 1, 0.05, [](const S& s) { return s.pipeline.jets.trim_rate; },
       [](S& s, double v) { s.pipeline.jets.trim_rate = v; }, has_jets,
-      "How fast several jets are made to press alike on the hand. 0: not at all.");
+      "Rate at which the pressures of several jets on the hand are equalised. 0: off.");
   list.number(
       "buoyancy", "Buoyancy", "m/s²", 0, 5, 0.1,
       [](const S& s) { return s.pipeline.fluid.buoyancy; },
@@ -199,14 +199,14 @@ std::vector<RunControl> smoke_controls() {
   list.toggle(
       "parts", "Both parts", [](const S& s) { return s.pipeline.fluid_pressure.parts ? 1.0 : 0.0; },
       [](S& s, double v) { s.pipeline.fluid_pressure.parts = v != 0.0; }, has_smoke,
-      "Shows the force of the smoke and that of the hand's own movement apart, whichever is felt, "
-      "and records both. It takes twice the smoke's time.");
+      "Shows and records the forces of the smoke and of the hand's own movement separately, "
+      "whichever is felt. It takes twice the smoke's time.");
   list.number(
       "grid", "Grid", "cells", FluidSettings::kLeastCells, FluidSettings::kMostCells, 1,
       [](const S& s) { return static_cast<double>(s.pipeline.fluid.cells); },
       [](S& s, double v) { s.pipeline.fluid.cells = static_cast<int>(v); }, has_smoke,
-      "Cells along each edge of the smoke's box. Fewer are coarser, and cost less time. The smoke "
-      "begins anew.");
+      "Cells along each edge of the smoke's box. Fewer are coarser and faster. Restarts the "
+      "smoke.");
   return list.take();
 }
 
@@ -228,41 +228,41 @@ std::vector<RunControl> plan_controls() {
       [](const S& s) {
         return static_cast<double>(is_am(s) ? s.pipeline.am.foci : s.pipeline.plan.paths);
       },
-      set_paths, always, "Focal points at the same time; more share the array's power.");
+      set_paths, always, "Simultaneous focal points, which share the array's power.");
   list.number(
       "speed", "Speed", "m/s", 2, 8, 0.5, [](const S& s) { return s.pipeline.plan.speed; },
       [](S& s, double v) { s.pipeline.plan.speed = v; }, is_pro_stm,
-      "Of the focal points; the longest path is the speed over the draw rate.");
+      "Speed of the focal points. The longest path is the speed divided by the draw rate.");
   list.number(
       "gain", "Gain γ", "", 0.5, 3, 0.1, [](const S& s) { return s.pipeline.plan.gain; },
       [](S& s, double v) { s.pipeline.plan.gain = v; }, is_pro_stm,
-      "Rendered pressure over the pressure that a path is felt as.");
+      "Ratio of the rendered pressure to the perceived pressure of a path.");
   list.toggle(
       "array_width", "Array's own width",
       [](const S& s) { return s.pipeline.array_width ? 1.0 : 0.0; },
       [](S& s, double v) { s.pipeline.array_width = v != 0.0; }, is_fitted,
-      "Presets Best and Fast count on the width of the array's focus where the hand is.");
+      "Presets Best and Fast use the width of the array's focus at the hand.");
   list.number(
       "sigma", "Width σ", "mm", 4, 20, 0.1,
       [](const S& s) { return std::round(1e4 * s.pipeline.sigma()) * 0.1; }, set_sigma, always,
-      "Fall-off of a focal point that the planner counts on where it is not the array's own.");
+      "Width of a focal point that the planner assumes, unless the array's own width is used.");
   list.number(
       "bending", "Smoothness", "", 0, 0.3, 0.01,
       [](const S& s) { return s.pipeline.plan.fit_bending; },
       [](S& s, double v) { s.pipeline.plan.fit_bending = v; }, is_fitted,
-      "How much bends in a path cost, of the presets Best and Fast.");
+      "Cost of bends in a path, for presets Best and Fast.");
   list.number(
       "felt_weight", "What is felt", "", 0, 1, 0.05,
       [](const S& s) { return s.pipeline.plan.felt_weight; },
       [](S& s, double v) { s.pipeline.plan.felt_weight = v; }, is_fitted,
-      "How much the model of the skin counts when Best and Fast choose pressures; the paths then "
-      "run in step. 0 is off, 0.9 is recommended. Nobody has felt it.");
+      "Weight of the skin model when Best and Fast choose pressures; the paths are then "
+      "synchronised. 0 is off, 0.9 is recommended. Nobody has felt it.");
   list.number(
       "am_felt_weight", "What is felt of AM", "", 0, 1, 0.05,
       [](const S& s) { return s.pipeline.am.felt_weight; },
       [](S& s, double v) { s.pipeline.am.felt_weight = v; }, is_am,
-      "How much the model of the skin counts when pressures and phases of the focal points are "
-      "chosen. 0 is off. Nobody has felt it.");
+      "Weight of the skin model in the choice of pressures and phases of the focal points. "
+      "0 is off. Nobody has felt it.");
   return list.take();
 }
 
@@ -273,22 +273,22 @@ std::vector<RunControl> output_controls() {
       "switch", "Take over", kSwitches,
       [](const S& s) { return static_cast<double>(s.pipeline.emit.switch_at); },
       [](S& s, double v) { s.pipeline.emit.switch_at = static_cast<SwitchAt>(v); }, is_pro_stm,
-      "Whether a new plan waits for the end of each path's lap, or cuts it short.");
+      "Whether a new plan waits until each path's loop ends, or interrupts it.");
   list.number(
       "tilt", "Tilt compensation", "×", 1, 4, 0.1,
       [](const S& s) { return s.pipeline.emit.tilt_bound; },
       [](S& s, double v) { s.pipeline.emit.tilt_bound = v; }, always,
-      "The most by which pressure makes up for skin that is tilted away; 1 is off.");
+      "Largest factor on the pressure to compensate for tilted skin; 1 is off.");
   list.number(
       "am_frequency", "Modulation", "Hz", 50, 300, 10,
       [](const S& s) { return s.pipeline.emit.am_frequency; },
       [](S& s, double v) { s.pipeline.emit.am_frequency = v; }, is_am,
-      "Of the intensity of AM's focal points.");
+      "Modulation frequency of the intensity of AM's focal points.");
   list.choice(
       "am_waveform", "Waveform", kWaveforms,
       [](const S& s) { return static_cast<double>(s.pipeline.emit.am_waveform); },
       [](S& s, double v) { s.pipeline.emit.am_waveform = static_cast<Waveform>(v); }, is_am,
-      "Of the modulation.");
+      "Waveform of the modulation.");
   return list.take();
 }
 
@@ -298,14 +298,14 @@ std::vector<RunControl> hand_controls() {
   list.choice(
       "source", "Hands from", kSources, [](const S& s) { return place(kSources, s.source); },
       [](S& s, double v) { s.source = chosen(kSources, v); }, always,
-      "Where hands come from while the page's own hand lets go.", has_source);
+      "Source of the hands when the page's own hand is off.", has_source);
   list.toggle(
       "prediction", "Prediction",
       [](const S& s) { return s.pipeline.track.prediction > 0.0 ? 1.0 : 0.0; },
       [](S& s, double v) {
         s.pipeline.track.prediction = v != 0.0 ? TrackSettings{}.prediction : 0.0;
       },
-      always, "Moves tracked hands on by the time that passes until they are felt.");
+      always, "Extrapolates tracked hands by the latency until they are felt.");
   return list.take();
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Where the time goes from a tracker's frame to the first sample planned from it.
+/// Latency from a tracker's frame to the first sample planned from it, by parts.
 
 #include <array>
 #include <cstddef>
@@ -14,19 +14,19 @@
 
 namespace prostm {
 
-/// The parts of a latency in the order of time, (L3): each follows the one before without a gap.
+/// The parts of a latency in order of time, (L3), without gaps between them.
 enum LatencyPart : int {
-  kFrameWait,  ///< the tracker's frame is there, the step that takes it is not due yet
-  kLateStart,  ///< the step is due, and has not taken the hands
-  kHandPart,   ///< the hands are filtered and drawn on the grid
-  kWorldPart,  ///< the world meets the hands
+  kFrameWait,  ///< from the tracker's frame until the step that takes it is due
+  kLateStart,  ///< until the step takes the hands
+  kHandPart,   ///< filtering and rasterising the hands
+  kWorldPart,  ///< computing the world with the hands
   kContactPart,
-  kHandOver,  ///< until the planner's thread begins
+  kHandOver,  ///< until the planner's thread starts
   kPlanPart,
-  kLiftPart,   ///< onto the skin, and to the emitter
-  kBlockWait,  ///< until the device asks for a block; below 0 where it is asked late
-  kLapWait,    ///< until the first focal point goes over
-  kQueuePart,  ///< of the device
+  kLiftPart,   ///< lifting onto the skin, and submission to the emitter
+  kBlockWait,  ///< until the device requests a block; negative if the request is late
+  kLapWait,    ///< until the first focal point switches to the plan
+  kQueuePart,  ///< queue of the device
   kLatencyParts
 };
 
@@ -38,27 +38,29 @@ struct Latency {
   double total = 0.0;
 };
 
-/// Follows plans from the tracker to the device. Allocates nothing after construction.
+/// Measures the latency of plans from the tracker to the device. Does not allocate after
+/// construction.
 class LatencyLog {
  public:
-  /// @param realtime whether the stages' own times count: without a clock a plan is made in no
-  /// time, at the run time that its hands were taken.
+  /// @param realtime whether to include the stages' times: without a clock, a plan takes no time,
+  /// at the run time at which its hands were taken.
   explicit LatencyLog(bool realtime) : realtime_(realtime) {}
 
-  /// A plan was handed to the emitter. @param run_start what the device's clock shows at run time 0
-  /// [s].
+  /// Records a plan submitted to the emitter. @param run_start device's clock at run time 0 [s].
   void plan(const WorldFrame& contact, const PlanFrame& plan, double run_start) noexcept;
-  /// The emitter reports on a plan.
+  /// Records the emitter's report on a plan.
   void follow(const TakeOver& event, const Device& device) noexcept;
 
-  /// The latency of the plan that was followed last; empty before the first.
+  /// The latency of the last completed plan; empty before the first.
   const std::optional<Latency>& last() const { return last_; }
-  /// Its total, NaN before the first [s].
+  /// Total of last() [s]; NaN before the first.
   double last_total() const {
     return last_ ? last_->total : std::numeric_limits<double>::quiet_NaN();
   }
   Summary total() const { return total_.summary(); }
-  Summary redraw() const { return redraw_.summary(); }  ///< until 90 % of the plan were drawn [s]
+  Summary redraw() const {
+    return redraw_.summary();
+  }  ///< time until 90 % of the plan is drawn [s]
   Summary part(int part) const { return parts_[static_cast<std::size_t>(part)].summary(); }
 
  private:
@@ -68,7 +70,7 @@ class LatencyLog {
   };
 
   const bool realtime_;
-  std::array<Plan, 256> plans_{};  // by id; one is taken over within a few updates or never
+  std::array<Plan, 256> plans_{};  // by id; a plan takes over within a few updates or never
   std::optional<Latency> last_;
   Distribution total_, redraw_;
   std::array<Distribution, kLatencyParts> parts_;

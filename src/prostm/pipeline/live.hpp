@@ -1,5 +1,5 @@
 #pragma once
-/// A run that is steered while it goes: what is asked of it, what it answers, and how it is.
+/// Live control of a run: commands, refusals and state.
 
 #include <cstdint>
 #include <functional>
@@ -17,44 +17,45 @@
 
 namespace prostm {
 
-/// Asked by an onlooker, done between two steps.
+/// A viewer's command, executed between two steps.
 struct LiveCommand {
   enum class Kind : std::uint8_t {
-    Set,        ///< a control
-    Configure,  ///< all settings
+    Set,        ///< sets a control
+    Configure,  ///< replaces all settings
     Play,
     Pause,
-    Step,        ///< pauses, and goes on by one plan update
-    Seek,        ///< of the recording
-    TrackerPose  ///< where the tracker stands
+    Step,        ///< pauses, and advances by one plan update
+    Seek,        ///< moves within the recording
+    TrackerPose  ///< sets the pose of the tracker
   } kind = Kind::Play;
-  std::uint32_t sender = 0;  ///< who gets the answer
-  int control = 0;           ///< of Set: its place in run_controls()
-  double value = 0.0;        ///< of Set, or the time of Seek [s]
+  std::uint32_t sender = 0;  ///< the viewer to answer
+  int control = 0;           ///< for Set: index in run_controls()
+  double value = 0.0;        ///< for Set; for Seek, the time [s]
   Pose X_DT = Pose::Identity();
-  std::shared_ptr<const LiveSettings> settings = {};  ///< of Configure
+  std::shared_ptr<const LiveSettings> settings = {};  ///< for Configure
 };
 
-/// Why something that was asked for was not done.
+/// The reason why a command was refused.
 struct LiveRefusal {
   std::uint32_t sender = 0;
   std::string sentence;
 };
 
-/// How a run stands.
+/// State of a run.
 struct LiveState {
   LiveSettings settings;
   bool playing = true;
-  double recording_length = 0.0;         ///< of the hands' recording, 0 without one [s]
-  std::optional<TrackerStatus> tracker;  ///< of hands that are tracked live
-  Pose X_DT = Pose::Identity();          ///< where the tracker stands
+  double recording_length = 0.0;         ///< length of the hands' recording [s]; 0 without one
+  std::optional<TrackerStatus> tracker;  ///< status, if hands are tracked live
+  Pose X_DT = Pose::Identity();          ///< pose of the tracker
 };
 
-/// The hand-off between one onlooker's thread and the thread that runs the pipeline. Neither waits.
+/// Passes data between one viewer's thread and the thread that runs the pipeline, without blocking
+/// either.
 class LiveControl {
  public:
-  // ---- the onlooker's thread ----
-  /// False when too much waits already.
+  // ---- the viewer's thread ----
+  /// Queues a command. False if the queue is full.
   bool ask(const LiveCommand& command) { return commands_.push(command); }
   bool next_refusal(LiveRefusal& out) { return refusals_.pop(out); }
   bool refresh() { return state_.refresh(); }
@@ -63,7 +64,7 @@ class LiveControl {
   // ---- the running thread ----
   bool pending() { return commands_.front() != nullptr; }
   bool next(LiveCommand& out) { return commands_.pop(out); }
-  /// When too many wait already it is lost.
+  /// Queues a refusal; dropped if the queue is full.
   void refuse(std::uint32_t sender, std::string sentence) {
     refusals_.push({sender, std::move(sentence)});
   }
@@ -82,16 +83,17 @@ class LiveControl {
 struct LiveLink {
   Snapshots snapshots;
   LiveControl control;
-  LiveSettings settings;                                  ///< at the start
-  std::shared_ptr<Mute> mute = std::make_shared<Mute>();  ///< that the pipeline was made with
+  LiveSettings settings;                                  ///< initial settings
+  std::shared_ptr<Mute> mute = std::make_shared<Mute>();  ///< the pipeline's mute
   std::shared_ptr<PageHand> page_hand;
-  HandSwitch* hands = nullptr;  ///< those of the pipeline
-  /// Hands by the name of their source, behind the page's. @throws InputError.
+  HandSwitch* hands = nullptr;  ///< the pipeline's hands
+  /// Makes hands from the name of their source; the page's hand takes precedence. @throws
+  /// InputError.
   std::function<std::unique_ptr<HandSwitch>(const std::string& source, const PipelineSettings&)>
       make_hands;
   /// Writes a new pose of the tracker. @throws InputError.
   std::function<void(const Calibration&)> save_pose;
-  std::string pose_file;  ///< that save_pose writes
+  std::string pose_file;  ///< written by save_pose
 };
 
 }  // namespace prostm

@@ -19,13 +19,12 @@ const PipelineSettings& checked(const PipelineSettings& settings) {
   require_bounds(settings);
   if (!settings.X_DT.matrix().allFinite() || !settings.X_DT.linear().isUnitary(1e-6) ||
       settings.X_DT.linear().determinant() < 0.0) {
-    throw std::invalid_argument(
-        "X_DT is no pose; it must be a rotation and a place that is finite");
+    throw std::invalid_argument("X_DT is not a pose; it must be a rotation and a finite position");
   }
   return settings;
 }
 
-/// Hands as they were so long before [s].
+/// Moves hands back in time, along their velocities [s].
 void put_back(double time, HandFrame& frame) {
   if (time == 0.0) return;
   frame.time -= time;
@@ -34,39 +33,39 @@ void put_back(double time, HandFrame& frame) {
   }
 }
 
-/// Whether the world's stage is built from the same.
+/// Whether the world stage is built from the same settings.
 bool same_world(const PipelineSettings& a, const PipelineSettings& b) {
   return a.track == b.track && a.fluid == b.fluid && a.box == b.box && a.jets == b.jets &&
          a.fluid_pressure == b.fluid_pressure && a.contact == b.contact && a.world == b.world &&
          a.scene == b.scene;
 }
 
-/// Whether the planner's stage is.
+/// Whether the plan stage is built from the same settings.
 bool same_plans(const PipelineSettings& a, const PipelineSettings& b) {
   return a.plan == b.plan && a.am == b.am && a.emit == b.emit && a.world == b.world &&
          a.scene == b.scene && a.method == b.method && a.array_width == b.array_width &&
          a.safety == b.safety;
 }
 
-/// The device that the settings name, or one of the caller's own.
+/// The device named by the settings, or the caller's own.
 std::unique_ptr<Device> device_of(const PipelineSettings& settings, std::unique_ptr<Device> own) {
   if (own != nullptr) return as_stream(std::move(own));
   return make_device(settings.device, settings.device_setup());
 }
 
-/// The σ that a planner counts on for a target [m].
+/// The σ that a planner assumes for a target [m].
 double sigma_on(const TargetField& target, const std::variant<Planner, AmPlanner>& planner) {
   if (const auto* of_foci = std::get_if<AmPlanner>(&planner)) return of_foci->settings().sigma;
   return std::get<Planner>(planner).settings().sigma_on(target);
 }
 
-/// Settings that the device plays as they are. @throws as require_playable() does.
+/// Returns the settings after require_playable(). @throws as require_playable().
 const PipelineSettings& playable(const PipelineSettings& settings, const DeviceInfo& device) {
   require_playable(settings, device);
   return settings;
 }
 
-/// The planner of the method.
+/// Makes the planner of the method.
 std::variant<Planner, AmPlanner> make_planner(const PipelineSettings& settings,
                                               std::size_t max_cells, double scene_full_scale,
                                               double emission_rate) {
@@ -230,7 +229,7 @@ void PlanStage::run(const WorldFrame& contact, PlanFrame& out) {
     emitter_->submit();
   }
   out.lift_time = timer.lap();
-  // the plan need not wait for it
+  // computed after the plan was submitted, to save latency
   out.gate.reset();
   if (contact.stimulus) out.gate = gate_.judge(contact.hands, contact.target, *contact.stimulus);
 }
@@ -311,7 +310,7 @@ std::string Pipeline::restart(PlanStage& plans) {
 
 void Pipeline::silence() {
   fade_out();
-  // when the device has stopped, nobody can tell any more when a sample was played
+  // play times of samples are available only until the device stops
   constexpr double kLongest = 0.1;  // [s]
   const double end = steady_now() + kLongest;
   while (!sound_.is_read() && steady_now() < end)
@@ -320,16 +319,16 @@ void Pipeline::silence() {
   sound_.end();
 }
 
-/// Until a block that follows the fade is played, however late the device's thread is.
+/// Waits until a block after the fade has been played, however late the device's thread is.
 void Pipeline::fade_out() {
-  constexpr double kLongest = 1.0;  // [s], for a device that plays nothing any more
+  constexpr double kLongest = 1.0;  // [s], in case the device has stopped playing
   const DeviceInfo& device = device_->info();
   if (!device.keeps_time) return;
   plans_->emitter().lose();
   const double fade = std::max(settings_.method == Method::Am ? 1.0 / settings_.emit.am_frequency
                                                               : settings_.emit.stall_fade_time,
                                SoundWatch::kMuteTime);
-  // the block that is being filled has not heard of it
+  // the block being filled may not contain the fade yet
   const std::int64_t silent =
       device_->stats().blocks + 2 +
       std::llround(std::ceil(fade * device.sample_rate)) / device.block_samples;
@@ -361,7 +360,7 @@ SafetyStats Pipeline::safety_stats() const {
 }
 
 void Pipeline::watch_heat(double time) {
-  constexpr double kCooling = 1.0;  // a flag that comes and goes stays on [s]
+  constexpr double kCooling = 1.0;  // keeps a flickering flag on [s]
   if (device_->is_hot()) cool_at_ = time + kCooling;
   mute_->set(MuteReason::Hot, time < cool_at_);
 }
@@ -370,7 +369,7 @@ bool Pipeline::step(double dt) {
   ++steps_;
   time_ += dt;
   watch_heat(time_);
-  // what was planned before plays up to the moment that these hands were seen
+  // earlier plans play up to the time of these hands
   play_until(*device_, time_);
   world_stage_->run(steps_, time_, dt, contact_frame_);
   if (contact_frame_.targeted) plans_->run(contact_frame_, plan_frame_);

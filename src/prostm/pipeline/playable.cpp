@@ -17,8 +17,7 @@ constexpr double kRounding = 1e-9;
                                           value, unit, most, unit, reason));
 }
 
-/// The largest speed that a path keeps on a device. Devices that round positions have less than
-/// kMaxFocusSpeed.
+/// Checks the speed of paths. Devices that round positions have a limit below kMaxFocusSpeed.
 void check_speed(const PlanSettings& plan, const DeviceInfo& device) {
   const double most =
       device.place_unit == 0.0 ? kMaxFocusSpeed : kStepMargin * device.max_focus_speed();
@@ -28,7 +27,7 @@ void check_speed(const PlanSettings& plan, const DeviceInfo& device) {
   }
 }
 
-/// Fades over the full range take no less than the largest slew allows.
+/// Checks that a fade over the full range does not exceed the largest slew.
 void check_fade(const char* setting, double time, double sample_rate) {
   const double least = 1.0 / (largest_slew(time, sample_rate) * sample_rate);
   if (time * (1.0 + kRounding) >= least) return;
@@ -37,8 +36,8 @@ void check_fade(const char* setting, double time, double sample_rate) {
                   least, 1e-3 * sample_rate));
 }
 
-/// A cap lowers the default power limit, which plans and files then state; a limit that was raised
-/// above the cap is an error.
+/// A cap lowers the default power limit, and plans and files then state the lower value; a limit
+/// set above the cap is an error.
 void check_power(const PipelineSettings& settings) {
   const double limit = settings.emit.power_limit, cap = settings.safety.power;
   if (limit <= cap || limit <= EmitSettings().power_limit) return;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{2}, kPausePoll{4};
 
-/// A run as the thread that called run() sees it.
+/// A run, on the thread that called run().
 class Run {
  public:
   Run(Pipeline& pipeline, const PipelineSettings& settings, const RunOptions& options,
@@ -73,12 +73,12 @@ class Run {
   RunSummary summary();
   void segment();
   bool goes_on();
-  void stand();
-  void look();
-  void keep_the_pause(bool watched);
+  void wait_while_paused();
+  void publish();
+  void watch_pause(bool watched);
 
   bool over() const { return shared_.end.over(); }
-  /// The output need not wait for the threads to end.
+  /// Starts the final fade without waiting for the threads to end.
   void mute_if_over() {
     if (pace_.realtime && over()) pipeline_.mute_for_good();
   }
@@ -116,18 +116,18 @@ class Run {
   WorldSide world_;
   PlanSide plans_;
   std::optional<Steering> steering_;
-  std::shared_ptr<const PageHand> page_hand_;  // null without pages
+  std::shared_ptr<const PageHand> page_hand_;  // null if there are no pages
   RateNews rates_;
-  std::optional<RunSummary> summary_;  // once the run's seconds are over
+  std::optional<RunSummary> summary_;  // set once the run's seconds are over
   bool summary_waits_ = false, watched_ = false;
-  double alone_since_ = 0.0;  // while paused: when a page was last seen [s of the clock]
+  double alone_since_ = 0.0;  // while paused: time at which a viewer was last seen [s of the clock]
 };
 
-/// The threads from one change that an onlooker asks for to the next.
+/// Runs the threads until the next change requested by a viewer.
 void Run::segment() {
   shared_.halt = shared_.world_ended = shared_.plan_ended = false;
   std::jthread world, plans;
-  // whatever fails here tells the threads to end before they are waited for
+  // a failure here asks the threads to end before they are joined
   shared_.end.guard([&] {
     world = std::jthread([this] { world_.run(); });
     plans = std::jthread([this] { plans_.run(); });
@@ -135,7 +135,7 @@ void Run::segment() {
       drain_updates();
       check_device();
       pipeline_.watch_heat(steady_now());
-      look();
+      publish();
       mute_if_over();
       std::this_thread::sleep_for(kLook);
     }
@@ -146,7 +146,7 @@ void Run::segment() {
   if (!shared_.end.failed()) drain_updates();
 }
 
-/// Does the work for which no other thread may run. Returns false at the end.
+/// Does the work between segments, while no other thread runs. Returns false at the end.
 bool Run::goes_on() {
   plans_.follow();
   if (!pace_.realtime || over() || (world_.done() && !pace_.stay)) return false;
@@ -156,14 +156,14 @@ bool Run::goes_on() {
   }
   if (steering_) {
     steering_->attend();
-    stand();
+    wait_while_paused();
   }
   world_.set_clock();
   return !over();
 }
 
-/// While the run is paused.
-void Run::stand() {
+/// Waits while the run is paused.
+void Run::wait_while_paused() {
   alone_since_ = steady_now();
   while (!steering_->playing() && !over()) {
     if (steering_->next_update()) {
@@ -175,14 +175,14 @@ void Run::stand() {
     }
     check_device();
     pipeline_.watch_heat(steady_now());
-    look();
+    publish();
     progress(shared_.run_time.load(std::memory_order_relaxed));
     if (steering_->pending()) steering_->attend();
   }
 }
 
-/// For those who look.
-void Run::look() {
+/// Publishes the state for viewers and the observer.
+void Run::publish() {
   if (summary_waits_) observer_.on_summary(*summary_);
   summary_waits_ = false;
   if (!steering_) return;
@@ -193,13 +193,13 @@ void Run::look() {
                   steady_now() - planned_at > stall_time_, rates_.advice());
   if (steering_->pending()) shared_.halt = true;
   const bool watched = steering_->snapshots().watched();
-  if (!steering_->playing()) keep_the_pause(watched);
+  if (!steering_->playing()) watch_pause(watched);
   watched_ = watched;
 }
 
-/// A pause belongs to those who look: somebody who has just come sees the smoke, and when nobody
-/// has been there for a while the run goes on.
-void Run::keep_the_pause(bool watched) {
+/// Handles viewers of a paused run: a new viewer gets the smoke, and without viewers the run
+/// resumes after a while.
+void Run::watch_pause(bool watched) {
   if (watched && !watched_) steering_->snapshots().volume(pipeline_.world_stage().world());
   const double now = steady_now();
   if (watched) alone_since_ = now;

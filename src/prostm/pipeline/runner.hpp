@@ -1,5 +1,5 @@
 #pragma once
-/// Runs a pipeline for a while, in steps or on threads, and tells how it went.
+/// Runs a pipeline for a given time, in steps or on threads, and returns a summary.
 
 #include <array>
 #include <cstdint>
@@ -19,107 +19,108 @@ namespace prostm {
 struct LiveLink;
 
 enum class RunMode : std::uint8_t {
-  RealTime,  ///< world, planner and device on threads, paced by the clock; what cannot be kept up
-             ///< with is skipped and counted
+  RealTime,  ///< world, planner and device on threads, paced by the clock; late work is skipped and
+             ///< counted
   AsFastAsPossible,  ///< world and planner on threads without a clock; nothing is dropped
-  Stepped  ///< Pipeline::step on the caller's thread; the same plans as AsFastAsPossible, to the
-           ///< bit
+  Stepped  ///< Pipeline::step on the caller's thread; the plans are bit-identical to those of
+           ///< AsFastAsPossible
 };
 template <>
 inline constexpr std::array<std::string_view, 3> kNames<RunMode> = {
     "realtime", "as-fast-as-possible", "stepped"};
 
-/// Says why a device cannot play in a mode, to follow its name; empty if it can.
+/// Returns why a device cannot play in a mode, as a clause that follows its name; empty if it can.
 std::string mode_problem(const DeviceInfo& device, RunMode mode);
 
 struct RunOptions {
-  double seconds = 60.0;  ///< of run time
+  double seconds = 60.0;  ///< run time [s]
   RunMode mode = RunMode::RealTime;
-  /// In real time, what a step does without the hands is done before they are taken; false:
-  /// after that, as the paper does, to compare.
+  /// In real time, whether the work of a step that needs no hands is done before they are taken.
+  /// false: afterwards, as in the paper, for comparison.
   bool prepare_early = true;
-  LiveLink* live = nullptr;  ///< lets onlookers see and steer a run in real time
-  bool stay = false;         ///< goes on after `seconds`, until the observer stops it
-  /// A run that is paused goes on when nobody has looked at it for this long [s].
+  LiveLink* live = nullptr;  ///< lets viewers watch and control a real-time run
+  bool stay = false;         ///< continue after `seconds`, until the observer stops the run
+  /// A paused run resumes when it has had no viewer for this time [s].
   double pause_kept = 3.0;
 };
 
 /// The numbers of a run; times in seconds, lengths in metres.
 struct RunSummary {
   RunMode mode = RunMode::RealTime;
-  double seconds = 0;    ///< of run time, shorter than asked when stopped
-  double took = 0;       ///< by the clock, pauses included
-  bool stopped = false;  ///< by the observer, or by what failed
-  /// The first exception that ended the run, thrown by an observer, the hands, a stage or the
-  /// device's end; null without one.
+  double seconds = 0;    ///< run time; shorter than requested if stopped
+  double took = 0;       ///< elapsed time, including pauses
+  bool stopped = false;  ///< by the observer or a failure
+  /// The exception that ended the run, thrown by an observer, the hands, a stage or the end of the
+  /// device; null without one.
   std::exception_ptr failure;
   std::int64_t world_steps = 0, skipped_world_steps = 0, plans = 0, empty_updates = 0,
                skipped_updates = 0;
-  std::int64_t unobserved = 0;                 ///< plan updates that the observer was too slow for
-  std::int64_t long_paths = 0, crossings = 0;  ///< of all plans
-  /// Updates whose target is a stimulus, and those of them that passed its gate.
+  std::int64_t unobserved = 0;  ///< plan updates dropped because the observer was too slow
+  std::int64_t long_paths = 0, crossings = 0;  ///< over all plans
+  /// Updates whose target should be a stimulus, and those among them that passed its gate.
   std::int64_t judged_updates = 0, passed_updates = 0;
   std::int64_t late_page_hands = 0, hidden_page_hands = 0;  ///< PageHandReport
-  /// Judged updates of a hand that had been held well for kSettled, which the air needs
-  /// to come up to it; those of them that passed; and the most frequent fault of the others.
+  /// Judged updates of a hand that had been held well for kSettled, the time that the air needs to
+  /// reach it; those that passed; and the most frequent problem of the others.
   std::int64_t held_updates = 0, held_passed_updates = 0;
   GateProblem held_problem = GateProblem::None;
   static constexpr double kSettled = 5.0;  ///< [s]
-  Adviser adviser;                         ///< options that were advised during the run
-  ContactStats contact_stats;              ///< of all updates
+  Adviser adviser;                         ///< options advised during the run
+  ContactStats contact_stats;              ///< over all updates
   DeviceInfo played_by;
   DeviceStats device;
   EmitStats emit;
-  /// Samples that the limiter before the device changed because a stage erred.
+  /// Samples changed by the limiter before the device because of an error in a stage.
   std::int64_t limited_samples = 0;
   SafetyStats safety;
   double max_path_length = 0, max_skin_length = 0;
-  /// Quantities of the world, and their means over its steps; of the last world, if a run had
+  /// Quantities of the world, and their means over its steps; those of the last world, if a run had
   /// several.
   std::span<const WorldQuantity> world_quantities;
   std::array<double, kMaxWorldQuantities> world_means = {};
   std::int64_t world_resets = 0;
   double full_scale_pressure = 0;  ///< rendered pressure at intensity 1 [Pa]
   Summary latency, redraw;
-  std::array<Summary, kLatencyParts> latency_parts;  ///< by LatencyPart; their means add up to the
-                                                     ///< mean latency
-  Summary track, hand, world, contact, plan, lift;   ///< of the stages
-  /// Period of a lap [s] and speed of the focal point [m/s] as played, over all paths of all plans.
+  /// By LatencyPart; their means add up to the mean latency.
+  std::array<Summary, kLatencyParts> latency_parts;
+  Summary track, hand, world, contact, plan, lift;  ///< times of the stages
+  /// Loop period [s] and focal-point speed [m/s] as played, over all paths of all plans.
   Summary lap, focus_speed;
 };
 
 template <>
 std::span<const Quantity<RunSummary>> quantities<RunSummary>();
 
-/// A stage's times in a summary.
+/// The times of a stage in a summary.
 struct StageSummary {
   const char* name;
   Summary RunSummary::*times;
 };
 std::span<const StageSummary> stage_summaries();
 
-/// Sees every plan update on the thread that called run(). Slow observers delay nothing in real
-/// time: what they miss is counted in RunSummary::unobserved. What an observer throws ends the run.
+/// Receives every plan update on the thread that called run(). A slow observer does not delay a
+/// real-time run: updates that it misses are counted in RunSummary::unobserved. An exception from
+/// an observer ends the run.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
   /// @return false to stop the run.
   virtual bool on_plan(const WorldFrame& contact, const PlanFrame& plan) = 0;
-  /// Now and then, with the run time so far [s]. @return false to stop the run.
+  /// Called regularly with the run time so far [s]. @return false to stop the run.
   virtual bool on_progress(double time) = 0;
-  /// In real time: the rates are not held and what to do, or they are held again, in a sentence.
+  /// Called in real time with a sentence: the rates are not held, with advice, or they are held
+  /// again.
   virtual void on_rates(const std::string& news) { static_cast<void>(news); }
-  /// The run's seconds are over, and it goes on (RunOptions::stay).
+  /// Called when the run's seconds are over and it continues (RunOptions::stay).
   virtual void on_summary(const RunSummary& summary) { static_cast<void>(summary); }
-  /// A paused run resumed because its last viewer left; run time [s].
+  /// Called when a paused run resumed because its last viewer left; run time [s].
   virtual void on_abandoned_pause(double time) { static_cast<void>(time); }
 };
 
-/// Runs `pipeline` from its beginning. However it ends, whatever fails and on whichever thread, all
-/// threads have ended then, the output has faded out, and the device is stopped. @return the
-/// summary of options.seconds, or of less when it was stopped; what failed is in it. @pre not run
-/// or stepped before; the device keeps time as the mode asks; options.live and
-/// options.stay only in real time.
+/// Runs `pipeline` from its beginning. On return, even after a failure, all threads have ended, the
+/// output has faded out, and the device is stopped. @return the summary of options.seconds, or less
+/// if the run was stopped, with any failure. @pre not run or stepped before; the device suits the
+/// mode, see mode_problem(); options.live and options.stay only in real time.
 RunSummary run(Pipeline& pipeline, const PipelineSettings& settings, const RunOptions& options,
                RunObserver& observer);
 

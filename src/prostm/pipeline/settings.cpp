@@ -13,25 +13,24 @@ namespace {
 
 template <class Settings, class Visitor>
 void list_all_but_world(Settings& s, Visitor& v) {
-  v.field({.name = "scene", .help = "what the hand is held into"}, s.scene);
-  v.field({.name = "method", .help = "how fields are rendered"}, s.method);
-  v.field({.name = "device", .help = "what plays"}, s.device);
+  v.field({.name = "scene", .help = "scene of the world"}, s.scene);
+  v.field({.name = "method", .help = "rendering method"}, s.method);
+  v.field({.name = "device", .help = "output device"}, s.device);
   v.field({.name = "array", .help = "the transducers, by name or a file"}, s.array);
   v.field({.name = "array_width",
-           .help = "whether best and fast count on the width of the array's "
-                   "focus, not on sigma"},
+           .help = "whether best and fast use the width of the array's focus "
+                   "instead of sigma"},
           s.array_width);
   v.field({.name = "tracker",
-           .help = "where the tracker is: centre, a kit such as ultraleap-kit, or a file"},
+           .help = "pose of the tracker: centre, a kit such as ultraleap-kit, or a file"},
           s.tracker);
   v.field({"world_rate", "Hz", 10, 1000, "steps of the world"}, s.world_rate);
   v.field({"world_steps_per_plan", "", 0, 100,
-           "steps of the world for each plan; 0: as the method asks"},
+           "steps of the world for each plan; 0: default of the method"},
           s.world_steps_per_plan);
-  v.field({"frame_wait", "s", 0, 0.1, "a step waits so long for a late frame of the tracker"},
+  v.field({"frame_wait", "s", 0, 0.1, "longest wait of a step for a late tracker frame"},
           s.frame_wait);
-  v.field({.name = "side_view", .help = "whether plan updates keep a picture from the side"},
-          s.side_view);
+  v.field({.name = "side_view", .help = "whether plan updates record a side view"}, s.side_view);
   v.field({"threads", "", 1, 256, "threads of the world"}, s.threads);
 }
 

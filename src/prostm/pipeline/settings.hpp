@@ -22,25 +22,25 @@
 
 namespace prostm {
 
-inline constexpr double kLiveBudget = 2e-3;  ///< for a plan of preset best in real time [s]
+inline constexpr double kLiveBudget = 2e-3;  ///< time for a plan of preset best in real time [s]
 
 struct PipelineSettings {
-  std::string world = "smoke";      ///< what presses on the hands, see world_kinds()
-  std::string scene = "one-plume";  ///< of the world, by name
+  std::string world = "smoke";      ///< name of the world, see world_kinds()
+  std::string scene = "one-plume";  ///< name of a scene of the world
   Method method = Method::ProStm;
-  std::string device = "sim";                      ///< what plays, see device_named()
-  std::string array = array_kinds().front().name;  ///< what `transducers` are: a name or a file
-  /// Plans of presets best and fast count on the width of the array's focus, not on [plan] sigma.
+  std::string device = "sim";                      ///< name of the device, see device_named()
+  std::string array = array_kinds().front().name;  ///< name or file of `transducers`
+  /// Whether presets best and fast assume the width of the array's focus instead of [plan] sigma.
   bool array_width = false;
-  std::string tracker = "centre";  ///< what `X_DT` is, by name: centre, a kit or a file
-  double world_rate = 50.0;        ///< steps of the world a second [Hz]
-  int world_steps_per_plan = 0;    ///< a plan every so many of them; 0: as the method asks, 2
-                                   ///< (25 Hz) of pro-stm, 1 (50 Hz) of am
-  /// In real time, a step that makes targets waits so long at most for a tracker's frame that comes
-  /// in after the step was due [s]; 0 to 0.1, at most half a step.
+  std::string tracker = "centre";  ///< origin of `X_DT`: centre, a kit or a file
+  double world_rate = 50.0;        ///< steps of the world per second [Hz]
+  int world_steps_per_plan = 0;    ///< steps of the world per plan; 0: default of the method, 2 (25
+                                   ///< Hz) for pro-stm, 1 (50 Hz) for am
+  /// Longest time that a real-time step with targets waits for a tracker's frame after the step was
+  /// due [s]; 0 to 0.1, at most half a step.
   double frame_wait = 0.010;
-  bool side_view = false;  ///< keep a picture of the box from the side with every plan update
-  int threads = 2;         ///< of the world, the stepping thread included
+  bool side_view = false;  ///< record a side view of the box with every plan update
+  int threads = 2;         ///< threads of the world, including the stepping thread
 
   TrackSettings track;
   ScriptedHandSettings scripted_hand;
@@ -48,65 +48,65 @@ struct PipelineSettings {
   FluidSettings fluid;
   BoxSettings box;
   JetSettings jets;
-  FluidPressureSettings fluid_pressure;  ///< in files with `contact`
+  FluidPressureSettings fluid_pressure;  ///< in files under `contact`
   ContactSettings contact;
   PlanSettings plan;
   AmSettings am;
   EmitSettings emit;
   SafetySettings safety;
-  DeviceSettings devices;                     ///< of all kinds, each under a name of its own
-  TransducerArray transducers = usx_array();  ///< not a field in files: `array` names them
+  DeviceSettings devices;  ///< settings of all kinds of devices, under their own names
+  TransducerArray transducers = usx_array();  ///< not stored in files: `array` names them
   Pose X_DT = default_tracker_pose();         ///< pose of the tracker; `tracker` names it
 
-  /// world_steps_per_plan, where 0 stands for what the method asks.
+  /// world_steps_per_plan, with 0 replaced by the method's default.
   int steps_per_plan() const;
 
-  /// Returns the setup that `device` is made from.
+  /// Returns the setup for making `device`.
   DeviceSetup device_setup() const {
     return {.array = transducers, .address = {}, .foci = emit.foci, .settings = devices};
   }
 
-  /// The device that these settings name, before it is made.
+  /// Information on the device named by these settings, before it is made.
   DeviceInfo device_info() const;
-  /// Samples of an emission for it [Hz].
+  /// Sample rate of an emission for that device [Hz].
   double emission_rate() const { return device_info().emission_rate(); }
 
-  /// The fall-off of a focal point that the method counts on [m].
+  /// Width σ of a focal point that the method assumes [m].
   double sigma() const;
-  /// The fields of this struct that belong to no stage.
+  /// Visits the fields of this struct that belong to no stage.
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
 };
 
-/// Gives plans of preset best their time in real time, where no budget was chosen: a clock is
-/// running, so the planner gets a share of an update, not a number of tries.
+/// Sets the time budget of preset best for real time, unless a budget was chosen: the planner then
+/// gets a share of an update instead of a number of evaluations.
 void set_live_budget(PipelineSettings& settings);
 
-/// The planner's settings with what an emission of so many samples a second can play, (P18).
+/// The planner's settings, limited to what an emission at this rate can play, (P18).
 PlanSettings playable_plan_settings(const PipelineSettings& settings, double emission_rate);
-/// The same with the widths that `array_width` asks for: those of `plan`, or else (A22) of
+/// The same, with the widths required by `array_width`: those of `plan`, or else (A22) of
 /// `transducers`.
 PlanSettings plan_settings(const PipelineSettings& settings, double emission_rate);
-/// Settings of the planner of AM, with the frequency of the modulation and, where what is felt
-/// counts, the table of σ of plan_settings().
+/// Settings of the AM planner, with the modulation frequency and, if there is a felt weight, the
+/// table of σ of plan_settings().
 AmSettings am_settings(const PipelineSettings& settings, double emission_rate);
 
-/// The levels that the array of the settings can reach, for its limiter.
+/// The levels that the array can reach, for the limiter.
 std::shared_ptr<const SafetyLevels> levels_of(const PipelineSettings& settings);
 
-/// The largest Σ intensity² that is emitted: [emit] power_limit within the cap of [safety].
+/// The largest Σ intensity² of the emission: [emit] power_limit within the cap of [safety].
 double power_limit(const PipelineSettings& settings);
 
-/// The emission's settings, with a full scale: where they give none, γ times `largest`, the largest
-/// pressure that is to be rendered [Pa]. Its power limit is power_limit().
+/// The emission's settings with a full scale: if they give none, γ times `largest`, the largest
+/// pressure to render [Pa]. The power limit is power_limit().
 EmitSettings emit_settings(const PipelineSettings& settings, double largest);
 
 /// Every stage's settings under its name in files: "pipeline", "track", "scripted_hand", "fluid", …
 std::vector<SettingsGroup> settings_groups(PipelineSettings& settings);
-/// The same to read alone.
+/// The same, read-only.
 std::vector<SettingsGroup> settings_groups(const PipelineSettings& settings);
-/// The settings as studies compare them and make checksums of them: all, except `world` where it is
-/// the default, so that studies from before there was a choice are still the same.
+/// The settings used by studies for comparisons and checksums: all, except a default `world`, for
+/// compatibility with studies from before `world` existed.
 std::vector<SettingsGroup> study_settings_groups(const PipelineSettings& settings);
 
 }  // namespace prostm

@@ -14,19 +14,19 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// σ that a patch was planned with [m].
+/// σ used for planning a patch [m].
 double sigma_of(const PipelineSettings& settings, const TargetField& target) {
   const bool by_place = settings.array_width && settings.method != Method::Am;
   return by_place ? settings.plan.sigma_on(target) : settings.sigma();
 }
 
-/// The force of pressures on square cells [N]; NaN without any.
+/// The force of pressures on square cells [N]; NaN without pressures.
 double force_of(const std::vector<double>& pressures, double cell) {
   if (pressures.empty()) return kNone;
   return cell * cell * std::accumulate(pressures.begin(), pressures.end(), 0.0);
 }
 
-/// Where blocks of cells begin and end along an edge, n of them.
+/// The boundaries of n blocks of cells along an edge.
 struct Blocks {
   explicit Blocks(std::size_t all) : cells(all) {
     const std::size_t widest = (cells + kVolumeViewCells - 1) / kVolumeViewCells;
@@ -39,11 +39,10 @@ struct Blocks {
   std::array<std::size_t, kVolumeViewCells + 1> edges = {};
 };
 
-/// Means over blocks. @pre densities of 0 to 1.
+/// Averages over blocks. @pre densities are between 0 and 1.
 void average(const World& world, const Blocks& blocks, std::span<std::uint8_t> out) {
   const auto& edges = blocks.edges;
-  std::array<float, FluidSettings::kMostCells>
-      row;  // sums over the rows that a row of blocks takes
+  std::array<float, FluidSettings::kMostCells> row;  // sums over the rows of a row of blocks
   auto to = out.begin();
   for (std::size_t k = 0; k < blocks.n; ++k) {
     for (std::size_t j = 0; j < blocks.n; ++j) {
@@ -58,7 +57,7 @@ void average(const World& world, const Blocks& blocks, std::span<std::uint8_t> o
         float sum = 0.0F;
         for (std::size_t x = edges[i]; x < edges[i + 1]; ++x) sum += row[x];
         const auto count = static_cast<float>(blocks.width(k) * blocks.width(j) * blocks.width(i));
-        // via int: float to int is one instruction, float to uint8 has none
+        // via int: float to int is one instruction, float to uint8 is not
         *to = static_cast<std::uint8_t>(
             static_cast<int>(std::min(255.0F * sum / count + 0.5F, 255.0F)));
       }

@@ -21,34 +21,36 @@ struct WorldScene {
 
 struct WorldKind {
   const char* name;  ///< in --world and settings
-  const char* help;  ///< what presses on the hands, a noun
-  /// Returns its scenes in the order in which to show them, one at least; the first is the default.
+  const char* help;  ///< noun for what presses on the hands
+  /// Returns its scenes in display order, at least one; the first is the default.
   std::span<const WorldScene> (*scenes)();
-  /// Makes the world of the settings' scene, which is one of scenes(). @param pool outlives it.
-  /// @throws std::invalid_argument with a sentence.
+  /// Makes the world of the settings' scene, which is one of scenes(). @param pool must outlive the
+  /// world. @throws std::invalid_argument with a sentence.
   std::unique_ptr<World> (*make)(const PipelineSettings& settings, WorkerPool& pool);
 };
 
-/// The worlds of this build; the first is the default. A program may use a table of its own.
+/// The worlds of this build; the first is the default. A program may supply its own table.
 std::span<const WorldKind> world_kinds();
 
-/// @throws std::invalid_argument that lists the names for any other.
+/// Returns a kind by name. @throws std::invalid_argument for an unknown name, listing the names.
 const WorldKind& world_named(std::string_view name,
                              std::span<const WorldKind> kinds = world_kinds());
-/// The scene of a kind. @throws std::invalid_argument that lists the kind's scenes for any other.
+/// Returns a scene of a kind. @throws std::invalid_argument for an unknown name, listing the kind's
+/// scenes.
 const WorldScene& scene_named(std::string_view name, const WorldKind& kind);
 
-/// Chooses a kind, and its default scene.
+/// Selects a kind and its default scene.
 void choose_world(const WorldKind& kind, PipelineSettings& settings);
 
-/// Makes the world that the settings name. @param pool outlives it.
+/// Makes the world named by the settings. @param pool must outlive the world.
 /// @throws std::invalid_argument with a sentence, also for a scene of another world.
 std::unique_ptr<World> make_world(const PipelineSettings& settings, WorkerPool& pool,
                                   std::span<const WorldKind> kinds = world_kinds());
 
-/// How an option's help lists the worlds: "smoke (default; jets of smoke)".
+/// The list of worlds for an option's help: "smoke (default; jets of smoke)".
 std::string world_choices(std::span<const WorldKind> kinds = world_kinds());
-/// The same for scenes: those of the default world, then those of each other, with its name.
+/// The list of scenes for an option's help: those of the default world, then those of each other
+/// world with its name.
 std::string scene_choices(std::span<const WorldKind> kinds = world_kinds());
 
 }  // namespace prostm

@@ -51,7 +51,7 @@ int WeightedKMeans::iterate(int max_iterations, Clusters& clusters) {
   } while (assign() && iterations < max_iterations);
   move_centres();
 
-  // leave out centres that have lost all their points on the way
+  // drop centres that have lost all their points
   clusters.centre.clear();
   clusters.mass.clear();
   for (std::size_t c = 0; c < k; ++c) {
@@ -63,15 +63,15 @@ int WeightedKMeans::iterate(int max_iterations, Clusters& clusters) {
 }
 
 /// k-means++ [Arthur and Vassilvitskii 2007]: each further seed is a point drawn with probability
-/// w·d², d its distance to the nearest seed so far. Leaves labels and distances at the nearest
-/// seed.
+/// proportional to w·d², d its distance to the nearest seed so far. Afterwards the labels and
+/// distances refer to the nearest seed.
 void WeightedKMeans::seed_centres(std::uint64_t seed) {
   const std::size_t n = size();
   Random random(seed);
   distance2_.assign(n, 1.0);
   label_.assign(n, 0);
   for (std::size_t c = 0; c < static_cast<std::size_t>(k_); ++c) {
-    // draw a point; rounding may carry the search past the last one with a chance
+    // draw a point; rounding may carry the search past the last point of positive probability
     double total = 0.0;
     for (std::size_t i = 0; i < n; ++i) total += weight_[i] * distance2_[i];
     double remaining = random.uniform() * total;
@@ -86,7 +86,7 @@ void WeightedKMeans::seed_centres(std::uint64_t seed) {
   }
 }
 
-/// Makes (x, y) seed c, and assigns it the points that are nearer to it than to any seed before.
+/// Makes (x, y) seed c, and assigns it the points that are nearer to it than to all earlier seeds.
 void WeightedKMeans::place_seed(std::size_t c, double x, double y) {
   cx_[c] = x;
   cy_[c] = y;
@@ -135,9 +135,9 @@ void WeightedKMeans::sort_neighbours() {
   }
 }
 
-/// Moves every point to its nearest centre. A centre farther from the present one than twice the
-/// point's distance to that cannot be nearer to the point (triangle inequality), so only a few
-/// neighbours are tested. @return whether any point moved.
+/// Assigns every point to its nearest centre. By the triangle inequality, a centre cannot be nearer
+/// to a point if its distance to the point's present centre is more than twice the point's distance
+/// to that, so only a few neighbours are tested. @return whether any point changed its centre.
 bool WeightedKMeans::assign() {
   bool changed = false;
   const auto k = static_cast<std::size_t>(k_);

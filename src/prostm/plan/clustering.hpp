@@ -34,7 +34,7 @@ class WeightedKMeans {
   /// Clusters the points into min(k, size()). @return Lloyd iterations done, at most
   /// `max_iterations`.
   int run(int k, int max_iterations, std::uint64_t seed, Clusters& clusters);
-  /// The same from given seeds: every point starts at the nearest one; ties go to the first.
+  /// Same as run(), but from given seeds: every point starts at the nearest; ties go to the first.
   /// @pre 1 <= seeds.size() <= kMaxClusters.
   int run_from(std::span<const Vec2> seeds, int max_iterations, Clusters& clusters);
 

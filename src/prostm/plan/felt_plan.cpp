@@ -14,7 +14,7 @@ namespace prostm {
 namespace {
 
 constexpr double kMm = 1e3;        // per metre
-constexpr double kMostLaps = 1e6;  // of a path in a loop
+constexpr double kMostLaps = 1e6;  // maximum laps of a path in a loop
 constexpr double kMicro = 1e6;     // µm per m
 
 /// Returns the plan's largest pressure.
@@ -22,9 +22,9 @@ double check(const Plan& plan, const TargetField& target, std::span<const SkinSe
   if (plan.paths.empty()) throw std::invalid_argument("the plan has no path, so nothing is felt");
   if (!(plan.loop > 0.0)) {
     throw std::invalid_argument(
-        "the plan is not in step: each path goes round on its own. Plan with felt_weight above 0");
+        "the plan is not in step: its paths have no common loop. Plan with felt_weight above 0");
   }
-  if (skins.empty()) throw std::invalid_argument("there must be at least one skin to feel with");
+  if (skins.empty()) throw std::invalid_argument("skins is empty; give at least one skin");
   validate(target);
   if (!(max_pressure(target) > 0.0)) {
     throw std::invalid_argument("the target has no pressure, so there is nothing to render");
@@ -32,7 +32,7 @@ double check(const Plan& plan, const TargetField& target, std::span<const SkinSe
   double largest = 0.0;
   for (const FocalPath& path : plan.paths) {
     if (path.patch != plan.paths[0].patch)
-      throw std::invalid_argument("the plan has paths on two hands; they are felt on one");
+      throw std::invalid_argument("the plan has paths on two hands; it must have them on one");
     if (path.points.size() < 3 || !(closed_length(path) > 0.0)) {
       throw std::invalid_argument("a path of the plan has fewer than 3 points, or no length");
     }
@@ -65,7 +65,7 @@ struct Sources {
   std::vector<StepPath<double>> paths;
   std::vector<std::size_t> begin;  // first source of each path
   std::vector<FeltSource<double>> source;
-  std::vector<double> pressure;  // over the unit
+  std::vector<double> pressure;  // relative to the unit
   double unit;
 };
 
@@ -77,7 +77,7 @@ FeltSkins<double> tables(std::span<const SkinSettings> skins, double sigma, doub
   return out;
 }
 
-/// Takes over the gradient of the last evaluation of `loss`.
+/// Copies the gradient of the last evaluation of `loss`.
 void take_gradient(const Plan& plan, const Sources& of, const std::vector<double>& by_pressure,
                    FeltLoss<double>& loss, FeltPlan& out) {
   const std::size_t all = of.source.size();

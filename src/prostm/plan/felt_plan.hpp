@@ -1,7 +1,7 @@
 #pragma once
-/// The percept of a plan in step by the planner's own model, in double precision: the reference of
-/// the felt step, and a tool for those who choose pressures themselves. Equations (W1) to (W3) of
-/// docs/design/planner-felt.md.
+/// The percept of a plan in step according to the planner's model, in double precision: the
+/// reference for the felt step, and a tool for choosing pressures by other means. Equations (W1) to
+/// (W3) of docs/design/planner-felt.md.
 
 #include <span>
 #include <vector>
@@ -13,25 +13,25 @@
 
 namespace prostm {
 
-/// The model looks at blocks of the target's skin, not at its cells.
+/// A block of the target's skin; the model is evaluated per block, not per cell.
 struct FeltBlock {
-  Vec2 position = Vec2::Zero();  ///< mean place of its skin, in P [m]
+  Vec2 position = Vec2::Zero();  ///< mean position of its skin, in P [m]
   double area = 0.0;             ///< share of the skin
   double pressure = 0.0;         ///< mean p* over the target's maximum
 };
 
-/// The percept, and the gradient of how badly it renders the target.
+/// The percept, and the gradient of its rendering error.
 struct FeltPlan {
   double lack = 0.0;  ///< mean of 1 − S_8.5 + 0.3 (1 − S_0) of √e over the skins, (W3)
   std::vector<FeltBlock> blocks;
-  /// √e by skin and block [m], with the plan's pressures in Pa.
+  /// √e by skin and block [m], if the plan's pressures are in Pa.
   std::vector<std::vector<double>> percept;
   std::vector<std::vector<double>> by_pressure;  ///< ∂lack/∂p by path and point
   std::vector<std::vector<Vec2>> by_point;       ///< ∂lack/∂x by path and point [1/m]
 };
 
-/// Computes what is felt of paths of one patch that run in step: from its first point on, each is
-/// gone round loop / period times in a loop, rounded. The skin is taken as flat.
+/// Computes the percept of paths of one patch in step. Each path starts at its first point and
+/// makes loop / period laps per loop, rounded. The skin is assumed flat.
 /// @param sigma fall-off of a focus [m].
 /// @throws std::invalid_argument for a plan that is not in step, has foci, paths on two hands, a
 /// path of fewer than 3 points or without length, or no pressure; for no skin; for a target that

@@ -9,7 +9,7 @@
 namespace prostm {
 namespace {
 
-/// A point between entries `low` and `low + 1`, `share` of the way.
+/// A position between entries `low` and `low + 1`, with weight `share` of the latter.
 struct Between {
   std::size_t low = 0;
   double share = 0.0;
@@ -77,7 +77,7 @@ void validate(const FocusWidths& widths) {
   const std::size_t places = widths.height.size() * widths.offset.size() * widths.tilt.size();
   if (widths.sigma.size() != places) {
     throw std::invalid_argument("there are " + std::to_string(widths.sigma.size()) +
-                                " focal widths; there must be one for each of " +
+                                " focal widths; there must be one for each of the " +
                                 std::to_string(places) + " places");
   }
   for (const double sigma : widths.sigma) {

@@ -9,11 +9,11 @@
 
 namespace prostm {
 
-/// γ over that of a loop of 20 ms, for loops of 5, 7.5, … 20 ms that a focal point at 7 m/s draws:
-/// what makes them felt alike along the loop by the nominal skin of docs/design/skin.md. The
-/// lab computes it, and a test does so anew.
+/// γ relative to a loop of 20 ms, for loops of 5, 7.5, … 20 ms drawn at 7 m/s. With these values
+/// the percept along the loop is equally strong for all of them, by the nominal skin of
+/// docs/design/skin.md. The lab computes the table; a test verifies it.
 inline constexpr std::array<double, 7> kSkinGains = {0.713, 0.744, 0.825, 0.869, 0.930, 0.975, 1.0};
-/// Returns kSkinGains at a period ≥ 0 [s], linear in between; beyond its ends, that of the end.
+/// Interpolates kSkinGains linearly at a period ≥ 0 [s]; periods outside its range are clamped.
 inline double skin_gain(double period) {
   constexpr double kFirst = 5e-3, kStep = 2.5e-3;
   const double place =
@@ -24,14 +24,14 @@ inline double skin_gain(double period) {
 }
 
 /// γ(T) = gain · (T · draw_rate)^exponent for a path whose lap takes T. So `gain` is the γ of the
-/// longest path, and of every path if the exponent is 0. T · draw_rate counts as at least 1/16 and
-/// at most 16, since a much shorter loop is a point at rest. With `from_skin` γ(T) goes with
-/// skin_gain(T) instead, (P9c), and `gain` still is that of the longest path.
+/// longest path, and of every path if the exponent is 0. T · draw_rate is clamped to [1/16, 16],
+/// since a much shorter loop is a point at rest. With `from_skin`, γ(T) is proportional to
+/// skin_gain(T) instead, (P9c); `gain` is still the γ of the longest path.
 struct GainLaw {
   double gain = 1.4;  ///< > 0
   double exponent = 0.0;
   double draw_rate = 50.0;  ///< laps per second of the longest path [Hz], > 0
-  bool from_skin = false;   ///< then the exponent is not used
+  bool from_skin = false;   ///< whether skin_gain() replaces the exponent
 
   /// Returns γ(T). @param period T [s], ≥ 0 and finite.
   double of(double period) const {

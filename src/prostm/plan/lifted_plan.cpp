@@ -8,7 +8,7 @@
 namespace prostm {
 namespace {
 
-constexpr double kSmoothingCells = 2.0;  // half width of the kernel of (E1), in cells of the target
+constexpr double kSmoothingCells = 2.0;  // half-width of the kernel of (E1), in cells of the target
 
 /// Length of the edge after point i.
 double edge(const LiftedPath& path, std::size_t i) {
@@ -17,8 +17,8 @@ double edge(const LiftedPath& path, std::size_t i) {
 
 using Lengths = boost::container::static_vector<double, kMaxLiftedPoints>;
 
-/// The path in the plane, for (E1): the edge after each point, and how much of the path each point
-/// stands for, half of each edge beside it.
+/// The path in the plane, for (E1): the length of the edge after each point, and each point's
+/// weight, half the length of its two edges.
 struct FlatPath {
   Lengths edge, weight;
   double length = 0.0;
@@ -41,7 +41,7 @@ double smooth_height(const FlatPath& flat, const Lengths& height, std::size_t i,
   double weights = flat.weight[i];
   if (weights <= 0.0) return height[i];
   double sum = weights * height[i];
-  // no wider than the path, so that the opposite point has no weight from either side
+  // at most half the path's length, so that the opposite point has no weight from either side
   const double reach = std::min(half_width, 0.5 * flat.length), falloff = 1.0 / reach;
   const auto add = [&](std::size_t j, double distance) {
     const double weight = (1.0 - distance * falloff) * flat.weight[j];
@@ -61,8 +61,8 @@ double smooth_height(const FlatPath& flat, const Lengths& height, std::size_t i,
   return sum / weights;
 }
 
-/// Cuts the segments into pieces: calls add(i, next, t) for the points from i (t = 0) to next
-/// (t = 1, left out). A path at rest has one point.
+/// Divides the segments into pieces: calls add(i, next, t) for the points from i (t = 0) to next
+/// (t = 1, excluded). A path at rest has one point.
 template <class Add>
 void subdivide(const FocalPath& path, const Add& add) {
   const std::size_t n = path.points.size();
@@ -75,7 +75,7 @@ void subdivide(const FocalPath& path, const Add& add) {
   }
 }
 
-/// All but the pressures.
+/// Computes everything but the pressures.
 void lift_points(const FocalPath& path, const TargetField& field, LiftedPath& out) {
   subdivide(path, [&](std::size_t i, std::size_t next, double t) {
     const Vec2 x = (1.0 - t) * path.points[i] + t * path.points[next];
@@ -148,7 +148,7 @@ PathPoint point_at(const LiftedPath& path, double s) {
   if (path.length <= 0.0) return {path.p_D[0], path.pressure[0]};
   s -= path.length * std::floor(s / path.length);
 
-  // the edge that holds s: the last point at or before it
+  // the edge that contains s begins at the last point at or before it
   const auto after = std::upper_bound(path.s.begin(), path.s.end(), s);
   const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - path.s.begin(), 1) - 1);
   const std::size_t next = i + 1 < path.s.size() ? i + 1 : 0;
@@ -171,7 +171,7 @@ PathPlace nearest_place(const LiftedPath& path, const Vec3& p_D) {
     }
   }
 
-  // then the better of the two edges at it
+  // then the nearer of the two edges at it
   PathPlace best{path.s[vertex], std::sqrt(least), path.p_D[vertex], Vec3::Zero()};
   for (const std::size_t i : {vertex, (vertex + n - 1) % n}) {
     const Vec3 e = path.p_D[(i + 1) % n] - path.p_D[i];

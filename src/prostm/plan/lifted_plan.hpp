@@ -1,5 +1,5 @@
 #pragma once
-/// A plan on the skin: paths in 3-D, ready to be followed.
+/// A plan on the skin: paths and foci in 3-D.
 
 #include <boost/container/static_vector.hpp>
 #include <cstdint>
@@ -17,7 +17,7 @@ inline constexpr int kMaxLiftedPoints = kMaxPathPoints * kLiftedPointsPerSegment
 /// `length`.
 struct LiftedPath {
   boost::container::static_vector<Vec3, kMaxLiftedPoints> p_D;  ///< [m]
-  /// Rendered, unit of the target.
+  /// Rendered pressure, unit of the target.
   boost::container::static_vector<double, kMaxLiftedPoints> pressure;
   boost::container::static_vector<double, kMaxLiftedPoints> s;  ///< [m], s[0] = 0
   double length = 0.0;                                          ///< length on the skin [m]
@@ -30,27 +30,27 @@ struct LiftedFocus {
   Vec3 p_D = Vec3::Zero();  ///< [m]
   double pressure = 0.0;    ///< rendered at the peak of the modulation, unit of the target
   int patch = 0;            ///< index of the target patch that it lies on
-  double phase = 0.0;       ///< as FocalPoint's
+  double phase = 0.0;       ///< as FocalPoint::phase
 };
 
 /// Either paths or foci; the other list is empty.
 struct LiftedPlan {
   boost::container::static_vector<LiftedPath, kMaxPaths> paths;
   boost::container::static_vector<LiftedFocus, kMaxPaths> foci;
-  double loop = 0.0;    ///< as Plan's [s]
+  double loop = 0.0;    ///< as Plan::loop [s]
   std::int64_t id = 0;  ///< number of the plan, from 1
 };
 
 /// Undoes the projection of section IV-A: cuts each segment into kLiftedPointsPerSegment pieces and
-/// gives each point the height of the skin there (height_at). The focal point is to move at the
-/// path's speed along the 3-D curve. The heights are smoothed along the path over two cells, (E1),
-/// since the stairs of a raster would make the curve longer than the skin is. A path of fewer than
-/// two distinct points is a point at rest; a path without points is left out. A focus gets the
-/// height of the skin there. Sets all but `id`. @pre every `patch` is an index into frame.patches.
+/// gives each point the height of the skin there (height_at). `speed` applies along the 3-D curve.
+/// The heights are smoothed along the path over two cells, (E1), since the steps of a raster would
+/// make the curve longer than the skin is. A path of fewer than two distinct points becomes a point
+/// at rest; a path without points is omitted. A focus gets the height of the skin there. Sets all
+/// but `id`. @pre every `patch` is an index into frame.patches.
 void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept;
 
-/// Returns the length on the skin of one path over `field`, as lift() makes it [m]. Its pressures
-/// are not read.
+/// Returns the length on the skin of one path over `field`, the same as that of lift() [m]. Does
+/// not read its pressures.
 double skin_length(const FocalPath& path, const TargetField& field) noexcept;
 
 /// Computes `s` and `length` from the points. @pre coordinates are finite.

@@ -9,8 +9,8 @@
 
 namespace prostm {
 
-/// `pro-stm`: focal points that run round closed paths. `am`: focal points that stand still, their
-/// intensity modulated.
+/// `pro-stm`: focal points that move along closed paths. `am`: stationary focal points with
+/// amplitude modulation.
 enum class Method : std::uint8_t { ProStm, Am };
 template <>
 inline constexpr std::array<std::string_view, 2> kNames<Method> = {"pro-stm", "am"};

@@ -12,7 +12,7 @@ namespace prostm {
 
 namespace {
 
-/// Those of presets best and fast.
+/// Lists the settings of presets best and fast.
 template <class Settings, class Visitor>
 void list_fit(Settings& s, Visitor& v) {
   constexpr double kPoints = kMaxPathPoints;
@@ -23,24 +23,24 @@ void list_fit(Settings& s, Visitor& v) {
   v.field({"fit_spacing", "", 0, 1000, "weight of points that are too near"}, s.fit_spacing);
   v.field({"fit_bending", "", 0, 1000, "weight of bends"}, s.fit_bending);
   v.field({"felt_weight", "", 0, 1,
-           "share that what is felt has in the choice of pressures by best and fast; 0: off"},
+           "weight of the percept when best and fast choose pressures; 0: off"},
           s.felt_weight);
   v.field({.name = "felt_points",
-           .help = "with felt_weight: whether what is felt moves the points of paths, too"},
+           .help = "with felt_weight: whether to move the points of paths by the percept, too"},
           s.felt_points);
   v.field({"fit_samples", "", 8, kPoints,
-           "points of a path that preset best moves; plans have twice as many, up to 64"},
+           "points per path in the search of preset best; plans have twice as many, up to 64"},
           s.fit_samples);
   v.field({"fit_hysteresis", "", 0, 1, "share of the cost that new paths must save"},
           s.fit_hysteresis);
-  v.field({"fit_starts", "", 1, 10'000, "sets of paths that are tried without a plan before"},
+  v.field({"fit_starts", "", 1, 10'000, "sets of paths tried if there is no previous plan"},
           s.fit_starts);
-  v.field({"fit_kicks", "", 0, 100'000, "tries to lay one or two paths anew"}, s.fit_kicks);
+  v.field({"fit_kicks", "", 0, 100'000, "attempts to re-initialise one or two paths"}, s.fit_kicks);
   v.field({"budget", "s", 0, 60, "time after which best tries nothing more; 0: only counts apply"},
           s.budget);
   v.field({"full_scale_pressure", "", 0, 1e300,
            "rendered pressure at full output that best and "
-           "fast plan for; 0: gain times the largest"},
+           "fast assume; 0: gain times the largest"},
           s.full_scale_pressure);
 }
 
@@ -51,10 +51,10 @@ void list(Settings& s, Visitor& v) {
   v.field({.name = "preset", .help = "how paths are planned"}, s.preset);
   v.field({"paths", "", 1, kMaxPaths, "largest number of paths"}, s.paths);
   v.field({"clusters", "", 1, kMostClusters, "k of the weighted k-means"}, s.clusters);
-  v.field({"samples", "", 8, kPoints, "points of a path (N); preset best has fit_samples"},
+  v.field({"samples", "", 8, kPoints, "points per path (N); preset best uses fit_samples"},
           s.samples);
   v.field({"speed", "m/s", 0.1, kMaxFocusSpeed, "speed of the focal points (v)"}, s.speed);
-  v.field({"draw_rate", "Hz", 0.1, 1e4, "laps a second of the longest path"}, s.draw_rate);
+  v.field({"draw_rate", "Hz", 0.1, 1e4, "laps per second of the longest path"}, s.draw_rate);
   v.field({"sigma", "m", 1e-4, 0.1, "fall-off of a focal point in Eqs. (1) and (4)"}, s.sigma);
   v.field({"gain", "", 0.01, 100, "gamma of the longest path: rendered over effective pressure"},
           s.gain);
@@ -62,7 +62,7 @@ void list(Settings& s, Visitor& v) {
            "exponent of a path's period in its gamma; 0: one gamma for all"},
           s.gain_exponent);
   v.field({.name = "gain_from_skin",
-           .help = "gamma by period from the model of the skin, in place of gain_exponent"},
+           .help = "gamma by period from the skin model, instead of gain_exponent"},
           s.gain_from_skin);
   v.field({"weight_pressure", "", 0, 1000, "weight of Eq. (2), the pressure on a path"},
           s.weight_pressure);
@@ -104,7 +104,7 @@ void validate(const PlanSettings& s) {
   validate(s.widths);
   if (s.gain_from_skin && s.gain_exponent != 0.0) {
     throw std::invalid_argument(
-        "gain_from_skin takes the place of gain_exponent: gain_exponent must be 0 with it");
+        "gain_from_skin replaces gain_exponent: with it, gain_exponent must be 0");
   }
   const PresetTraits& traits = s.traits();
   if (s.budget > 0.0 && !traits.takes_budget) {
@@ -114,11 +114,10 @@ void validate(const PlanSettings& s) {
   }
   if (s.budget > 0.0 && s.felt_points) {
     throw std::invalid_argument(
-        "felt_points takes tenths of a second a plan, so it is not for plans with a budget, as "
-        "runs "
-        "in real time have");
+        "felt_points takes tenths of a second per plan, so it cannot be combined with a budget, "
+        "which real-time runs have");
   }
-  // a loop may be half as long as a lap of the longest path, and must be one that is_loop() takes
+  // a loop may be as short as half a lap of the longest path, and must satisfy is_loop()
   if (s.felt_weight > 0.0)
     require_between("draw_rate with felt_weight", s.draw_rate, 1.0, 500.0, "Hz");
   if (s.felt_weight > 0.0 && !traits.is_fitted()) {

@@ -18,13 +18,13 @@ struct PlanSettings {
   Preset preset = kDefaultPreset;
   int paths = 4;               ///< maximum number of paths, 1..8
   int clusters = 50;           ///< k of the weighted k-means, 1..50
-  int samples = 20;            ///< N of a path, 8..64; preset best has fit_samples
+  int samples = 20;            ///< N, points per path, 8..64; preset best uses fit_samples
   double speed = 7.0;          ///< v of the focal points [m/s]
   double draw_rate = 50.0;     ///< laps per second of the longest path [Hz], (P9a)
   double sigma = 8.6e-3;       ///< fall-off σ of a focal point in Eqs. (1) and (4) [m]
   double gain = 1.4;           ///< γ of the longest path: rendered over effective pressure, (P9b)
   double gain_exponent = 0.0;  ///< exponent of a path's period in its γ, (P9b); 0: one γ for all
-  /// γ of shorter paths from the model of the skin, (P9c), in place of the exponent.
+  /// Whether γ of shorter paths comes from the skin model, (P9c), instead of the exponent.
   bool gain_from_skin = false;
   double weight_pressure = 3.0;      ///< weight of Eq. (2), p* over the frame's maximum
   double weight_length = 3.0;        ///< weight of Eq. (3), lengths in mm
@@ -41,47 +41,47 @@ struct PlanSettings {
   double fit_length = 1.0;      ///< weight of length and uneven samples, (P13)
   double fit_spacing = 0.3;     ///< weight of samples that are too near, (P14)
   double fit_bending = 0.03;    ///< weight of bending, (P15)
-  /// Weight of what is felt when pressures are chosen, 0 to 1, (P19); the rest is that of the
-  /// field (P10). 0: pressures are those of the fit.
+  /// Weight of the percept when pressures are chosen, 0 to 1, (P19); the field (P10) has the
+  /// rest. 0: pressures are those of the fit.
   double felt_weight = 0.0;
-  bool felt_points = false;  ///< whether what is felt moves the points of paths, too
-  int fit_samples = 28;      ///< N of a path that best moves, 8..64; plans have 2 N of at most 64
+  bool felt_points = false;      ///< whether to move the points of paths by the percept, too
+  int fit_samples = 28;          ///< N in the search of best, 8..64; plans have 2 N, at most 64
   double fit_hysteresis = 0.03;  ///< share of the cost that a new set of paths must save
-  int fit_starts = 4;            ///< sets of paths laid anew if there is no plan before
-  int fit_kicks = 8;             ///< tries to lay one or two paths anew
+  int fit_starts = 4;            ///< sets of paths tried if there is no previous plan
+  int fit_kicks = 8;             ///< attempts to re-initialise one or two paths
   /// Time after which `best` tries nothing more [s]; 0: only the counts apply, and the same input
   /// gives the same plan.
   double budget = 0.0;
-  /// Rendered pressure at full output that presets best and fast plan for [unit of the target]; 0:
-  /// γ of the longest path times the frame's maximum.
+  /// Rendered pressure at full output that presets best and fast assume [unit of the target]; 0: γ
+  /// of the longest path times the frame's maximum.
   double full_scale_pressure = 0.0;
   /// Properties of the emission, not fields in files: the time of a rise from silence to full
   /// output [s], and the share of full output's pressure below which it is silent.
   double rise_time = 1e-3, silent_below = 0.01;
-  /// For presets best and fast: σ of each target by its position and tilt; if empty, `sigma`. Not a
-  /// field in files.
+  /// For presets best and fast: σ of each target by its position and tilt; if empty, `sigma`. Not
+  /// stored in files.
   FocusWidths widths;
-  /// A preset that is not among those with names, in place of `preset`; it outlives the planner.
-  /// Not a field in files, which name `preset` all the same.
+  /// Custom preset, used instead of `preset` if not null; must outlive the planner. Not stored in
+  /// files; these contain `preset`.
   const PresetTraits* own_preset = nullptr;
 
   const PresetTraits& traits() const {
     return own_preset != nullptr ? *own_preset : traits_of(preset);
   }
-  /// Points of a path that are moved: `samples` or fit_samples.
+  /// Number of points of a path that the search moves: `samples` or fit_samples.
   int moved_samples() const { return traits().moves_fit_samples ? fit_samples : samples; }
 
   /// Returns the σ that a target is planned with [m]. @pre the target is valid.
   double sigma_on(const TargetField& target) const;
 
-  /// v of the paths that are planned [m/s]: `speed` within the margin that samples need,
-  /// kStepMargin of kMaxFocusSpeed, so that plans have the periods that are played.
+  /// v of planned paths [m/s]: `speed`, at most kStepMargin of kMaxFocusSpeed, the margin for the
+  /// rounding of samples, so that planned periods equal played ones.
   double path_speed() const { return std::min(speed, kStepMargin * kMaxFocusSpeed); }
 
   /// L [m], the length of a path that is drawn draw_rate times a second, (P9a).
   double max_length() const { return path_speed() / draw_rate; }
 
-  /// The law that gives γ of each path by its period.
+  /// Returns the law for γ of a path by its period.
   GainLaw gain_law() const { return {gain, gain_exponent, draw_rate, gain_from_skin}; }
 
   void visit(SettingsReader& v) const;

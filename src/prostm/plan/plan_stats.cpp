@@ -21,14 +21,14 @@ constexpr Quantity<PlanStats> count(const char* group, const char* name, int Pla
       .name = name, .unit = "", .help = help, .value = number, .better = better, .group = group};
 }
 
-// the stages stand first
+// the stages come first
 constexpr std::array kStats{
     stage("init", &PlanStats::init, "Finding the skin and its pressure."),
     stage("kmeans", &PlanStats::kmeans, "Clustering."),
     stage("tour", &PlanStats::tour, "The closed tour of the clusters."),
     stage("split", &PlanStats::split, "Splitting the tour."),
     stage("resample", &PlanStats::resample, "Even points along each path."),
-    stage("refine", &PlanStats::refine, "Refinement, making paths valid, and pressures."),
+    stage("refine", &PlanStats::refine, "Refinement, repair of paths, and pressures."),
     stage("total", &PlanStats::total, "All stages."),
     count("counts", "clusters", &PlanStats::clusters, "Clusters with pressure."),
     count("counts", "lloyd_iterations", &PlanStats::lloyd_iterations,

@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kLengthTolerance = 0.5e-3;  // tolerance of "longer than L" in the statistics [m]
 
-/// Whether there is pressure that a fit counts. @param maximum as highest_pressure() returns it.
+/// Returns whether there is pressure of positive weight. @param maximum from highest_pressure().
 bool has_counted_pressure(const TargetField& target, double maximum) {
   return maximum > 0.0 && (target.weight.empty() || CellWeights(target, maximum).any_pressure());
 }
@@ -71,14 +71,14 @@ struct Planner::Scratch {
   DistanceTable distance;
   Refiner refiner;
   std::vector<FitPlanner> fits;  // one for each patch, of a fitted preset
-  // samples of the paths, one path after the other, heaviest first [mm from the origin]
+  // samples of the paths, one path after the other, heaviest first, relative to the origin [mm]
   std::vector<Vec2> x;
 };
 
 void Planner::Scratch::collect_points(const TargetField& target, double maximum) {
   raster.set(target, maximum);
   kmeans.clear();
-  const double weak = pressure_share(settings.weak_pressure, 1.0);  // rounded as the cells are
+  const double weak = pressure_share(settings.weak_pressure, 1.0);  // rounded like the cells
   const double cell = kMmPerMetre * target.cell;
   for (int row = 0; row < target.rows; ++row) {
     for (int col = 0; col < target.cols; ++col) {
@@ -89,7 +89,7 @@ void Planner::Scratch::collect_points(const TargetField& target, double maximum)
   }
 }
 
-/// Makes the tour, splits and resamples it: fills `x`.
+/// Computes, splits and resamples the tour: fills `x`.
 void Planner::Scratch::initial_paths(int paths, PlanStats& stats, StageTimer& timer,
                                      const Vec2& origin, PlanTrace* trace) {
   // one tour through all clusters
@@ -143,11 +143,11 @@ void Planner::Scratch::append(const TargetField& target, int patch, double maxim
     path.period = skin_length(path, target) / path.speed;
     const double gain = settings.gain_law().of(path.period);
     for (const Vec2& sample : loop) {
-      // a Catmull-Rom spline undershoots beside steep edges; pressure cannot be negative
+      // a Catmull-Rom spline undershoots near steep edges; pressure cannot be negative
       path.pressure.push_back(gain * std::max(raster.sample(sample).value, 0.0) * maximum);
     }
 
-    // violations, within the path and against the paths before
+    // violations, within the path and with earlier paths
     if (path.length > settings.max_length() + kLengthTolerance) ++stats.long_paths;
     stats.crossings += count_self_crossings(loop);
     for (std::size_t other = 0; other < begin; other += n) {
@@ -232,7 +232,7 @@ PlanStatus Planner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats)
     const double maximum = highest_pressure(frame.patches[i], scratch_->max_cells);
     if (maximum < 0.0) return PlanStatus::InvalidTarget;
     highest = std::max(highest, maximum);
-    // the weights do not change the sum (P17)
+    // the sum ignores the weights (P17)
     if (scratch_->has_pressure(frame.patches[i], maximum))
       pressure[i] = total_pressure(frame.patches[i]);
   }
@@ -245,7 +245,7 @@ PlanStatus Planner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats)
     scratch_->plan_patch(frame.patches[i], highest, static_cast<int>(i), share[i], budget,
                          planned < 2, plan, stats, nullptr);
   }
-  // a hand that has left starts anew when it comes back
+  // a hand that has left starts without a previous plan when it comes back
   for (std::size_t i = frame.patches.size(); i < scratch_->fits.size(); ++i) {
     scratch_->fits[i].reset();
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// The presets of the planner: a row for each, which all code asks.
+/// The presets of the planner, with their properties in one table.
 
 #include <array>
 #include <cstdint>
@@ -22,19 +22,19 @@ struct PresetTraits {
   std::string_view name;   ///< in files, on the command line and in Python
   std::string_view title;  ///< on the page
   PathSearch search = PathSearch::Paper;
-  bool makes_valid = false;        ///< of the paper's method: paths are cut and dropped until valid
+  bool makes_valid = false;        ///< repairs or drops invalid paths (paper's method only)
   bool takes_budget = false;       ///< PlanSettings::budget bounds its time
   bool moves_fit_samples = false;  ///< moves fit_samples points of a path, not `samples`
   bool halves_segments = false;    ///< plans have two pieces for each segment that is moved
 
-  /// Paths are fitted to the field: settings fit_… and felt_… apply, plans are always valid, and
-  /// PlanSettings::widths count, not sigma alone.
+  /// Returns whether paths are fitted to the field: settings fit_… and felt_… apply, plans are
+  /// always valid, and PlanSettings::widths is used if not empty.
   constexpr bool is_fitted() const { return search != PathSearch::Paper; }
 };
 
 /// `paper`: exactly the paper's method; its violations of length and crossing are reported.
-/// `paper-valid`: the same, then made valid. `best`: the paths whose field is nearest to the
-/// target, always valid. `fast`: one short search of the same kind.
+/// `paper-valid`: the same, then repaired to be valid. `best`: the paths whose field is nearest to
+/// the target, always valid. `fast`: one short search of the same kind.
 enum class Preset : std::uint8_t { Paper, PaperValid, Best, Fast };
 
 /// In the order of the enumerators.
@@ -64,9 +64,9 @@ inline constexpr auto kNames<Preset> = [] {
   return names;
 }();
 
-/// Returns "preset best", "presets best and fast": those of which `has` holds.
+/// Returns e.g. "preset best" or "presets best and fast": the presets for which `has` is true.
 std::string presets_with(bool (*has)(const PresetTraits& traits));
-/// For the help of options: "paper, paper-valid, best (default), or fast".
+/// Returns "paper, paper-valid, best (default), or fast", for the help of options.
 std::string preset_choices();
 
 }  // namespace prostm

@@ -19,7 +19,7 @@ std::string shown(const Json& value, int digits, const std::string& from) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (value.is_number()) return rounded(value.get<double>(), digits);
-  throw std::invalid_argument(from + " is no number and no text");
+  throw std::invalid_argument(from + " is neither a number nor a text");
 }
 
 /// Blocks of one part as HTML.
@@ -56,7 +56,8 @@ class Section {
     } else if (block.contains("figure")) {
       add_figure(block["figure"], pointer + "/figure");
     } else {
-      throw std::invalid_argument(part_.name + ".json: " + pointer + " is a block of no kind");
+      throw std::invalid_argument(part_.name + ".json: " + pointer +
+                                  " is an unknown kind of block");
     }
   }
 
@@ -83,7 +84,7 @@ class Section {
     return element("span", pointer, digits);
   }
 
-  /// Whether a column has numbers, and stands to the right.
+  /// Whether a column has numbers, and is right-aligned.
   static bool is_of_numbers(const Json& column, const Json& rows) {
     const std::string key = column["key"];
     return std::ranges::any_of(
@@ -104,7 +105,7 @@ class Section {
   }
 
   void add_table(const Json& table, const std::string& pointer) {
-    // above the box that scrolls, so that it does not scroll with a wide table
+    // outside the scrolling box, so that it does not scroll with a wide table
     out_ += fmt::format("<p class=\"caption\"{}>{}</p>\n", from(pointer + "/caption"),
                         paragraph(table["caption"]));
     out_ += "<div class=\"scroll\"><table>\n<thead><tr>";

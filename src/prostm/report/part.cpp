@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Whether all files that a part names are in the folder.
+/// Whether all files named by a part are in the folder.
 bool has_files(const Json& document, const fs::path& folder) {
   const auto is_there = [&](const Json& name) {
     return name.is_string() && fs::is_regular_file(folder / name.get<std::string>());
@@ -58,8 +58,8 @@ PartFolder::PartFolder(const std::string& folder) : folder_(folder) {
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure || !fs::is_directory(folder)) {
-    throw InputError(fmt::format("the folder {} cannot be made: {}; name another one", folder,
-                                 failure ? failure.message() : "a file has its name"));
+    throw InputError(fmt::format("the folder {} cannot be created: {}; name another one", folder,
+                                 failure ? failure.message() : "a file has this name"));
   }
   check_writable(path("part.json"));
 }
@@ -71,7 +71,7 @@ std::string PartFolder::path(const std::string& file) const {
 std::optional<Part> PartFolder::read(const std::string& name, const Json& asked) const {
   const std::string file = path(name + ".json");
   if (!fs::is_regular_file(file)) return std::nullopt;
-  // a file that is not ours, or was changed by hand, is made again
+  // a file that is not ours, or was edited, will be regenerated
   Json document = Json::parse(read_file(file, kMaxJsonBytes, Empty::Allowed), nullptr, false);
   if (!document.is_object() || document.value("format", "") != "prostm-report-part/1")
     return std::nullopt;

@@ -1,6 +1,6 @@
 #pragma once
-/// The parts of a report: each is a JSON file with its numbers and with the blocks of the page that
-/// show them, prostm-report-part/1 of docs/guides/report.md.
+/// The parts of a report. Each is a JSON file with numbers and with the page blocks that show them
+/// (prostm-report-part/1 in docs/guides/report.md).
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,7 +14,7 @@ struct Column {
   std::string key;        ///< member of each row
   std::string name;       ///< heading
   std::string unit = {};  ///< under the heading
-  int digits = 3;         ///< after the point of its numbers
+  int digits = 3;         ///< decimals of its numbers
 };
 
 /// A paragraph. `{/pointer}` stands for a text or whole number of the part's own document, and
@@ -22,30 +22,32 @@ struct Column {
 nlohmann::ordered_json text_block(const std::string& text);
 /// A heading within the part.
 nlohmann::ordered_json heading_block(const std::string& text);
-/// @param rows objects with a member for each column: a number, a text, true, false, or null where
-/// there is nothing. A row's own "digits" replaces that of the columns, and one with "marked": true
-/// stands apart.
+/// @param rows objects with a member for each column: a number, a text, true, false, or null for an
+/// empty cell. A row's own "digits" overrides that of the columns; a row with "marked": true is
+/// highlighted.
 nlohmann::ordered_json table_block(const std::string& caption, const std::vector<Column>& columns,
                                    nlohmann::ordered_json rows);
-/// @param file an SVG picture in the folder of the parts. @param alt what it shows.
+/// @param file an SVG picture in the folder of the parts. @param alt text description of the
+/// picture.
 nlohmann::ordered_json figure_block(const std::string& file, const std::string& caption,
                                     const std::string& alt);
 
 /// One part of a report.
 struct Part {
-  std::string name;  ///< of its file, NAME.json
+  std::string name;  ///< name of its file, without .json
   nlohmann::ordered_json document;
 };
 
-/// A folder with the files of parts, which are whole or not there.
+/// A folder with the files of parts, each complete or absent.
 class PartFolder {
  public:
-  /// Makes the folder where it is not there. @throws InputError: it cannot be made or written.
+  /// Creates the folder if needed. @throws InputError: it cannot be created or written.
   explicit PartFolder(const std::string& folder);
 
-  /// The name of a file in it.
+  /// The path of a file in the folder.
   std::string path(const std::string& file) const;
-  /// Reads the part, where its file was made for the same `asked` and all its pictures are there.
+  /// Reads a part; nothing unless its file was made for the same `asked` and all its pictures
+  /// exist.
   std::optional<Part> read(const std::string& name, const nlohmann::ordered_json& asked) const;
   /// Writes a part through a temporary file. @throws InputError: it cannot be written.
   void write(const Part& part) const;

@@ -14,7 +14,7 @@ namespace prostm {
 namespace {
 
 constexpr int kCircles = 4, kCirclePoints = 20, kDraws = 20, kPlacements = 50, kSweeps = 100;
-constexpr double kWeak = 0.01;  // points below this share of the maximum do not count
+constexpr double kWeak = 0.01;  // points below this share of the maximum are ignored
 
 FocalPath circle(const Vec2& centre, double length, double period, double pressure) {
   FocalPath path;
@@ -111,8 +111,8 @@ NormalSums normal_sums(const TargetField& target, double maximum, double sigma, 
 }
 
 /// Sets the pressures of circles to the non-negative least-squares solution of p̂ = p* on the skin.
-/// Eq. (1) is linear in the p_i: each cell sees the two samples beside its closest point. Solved by
-/// projected Gauss-Seidel on the normal equations.
+/// Eq. (1) is linear in the p_i: each cell depends on the two samples next to its closest point.
+/// Solved by projected Gauss-Seidel on the normal equations.
 void solve_pressures(const NormalSums& sums, double maximum, Plan& plan) {
   std::vector<std::array<double, kUnknowns>> normal(kUnknowns, std::array<double, kUnknowns>{});
   std::array<double, kUnknowns> right{}, solution{};
@@ -129,7 +129,7 @@ void solve_pressures(const NormalSums& sums, double maximum, Plan& plan) {
   }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (std::size_t i = 0; i < count; ++i) {
-      // samples that hardly touch the skin stay silent
+      // samples with hardly any effect on the skin stay at 0
       if (normal[i][i] < 1e-9) continue;
       double residual = right[i];
       for (std::size_t j = 0; j < count; ++j) residual -= normal[i][j] * solution[j];
@@ -141,7 +141,8 @@ void solve_pressures(const NormalSums& sums, double maximum, Plan& plan) {
   }
 }
 
-/// The pressures of a plan's paths themselves, for closest points that were found before these.
+/// Returns the present pressures of a plan's paths, for closest points computed before they
+/// changed.
 SegmentPressures own_pressures(const Plan& plan) {
   SegmentPressures out;
   for (const FocalPath& path : plan.paths) {
@@ -195,7 +196,7 @@ Plan moved(const Plan& other, const Vec2& centre, double maximum, const GainLaw&
   return plan;
 }
 
-/// Makes foci at random skin cells, with the pressures that AM gives them there.
+/// Returns foci at random skin cells, with the pressures of AM.
 Plan random_foci(const TargetField& target, const std::vector<Vec2>& skin, std::size_t count,
                  double sigma, Random& random) {
   Plan plan;

@@ -1,6 +1,6 @@
 #pragma once
-/// Scores of a plan when the world differs from the model that it was optimised for, (Q8)–(Q9) of
-/// docs/design/quality.md.
+/// Robustness scores: a plan under conditions that differ from the model it was optimised for,
+/// (Q8)–(Q9) of docs/design/quality.md.
 
 #include <string>
 #include <vector>
@@ -9,22 +9,22 @@
 
 namespace prostm {
 
-/// A rendering that differs from the planner's Eq. (1).
+/// A deviation of the rendering from the planner's Eq. (1).
 struct Disturbance {
   std::string name;
   double sigma = 0.0;  ///< fall-off of a focal point in the rendering [m], > 0
-  double shift = 0.0;  ///< shift of the paths over the skin, in the plane [m]; in kShiftDirections
+  double shift = 0.0;  ///< shift of the paths in the plane [m], applied in kShiftDirections
 };
 
 /// Directions of a shift: 0°, 45°, …, 315°.
 inline constexpr int kShiftDirections = 8;
 
-/// Returns the disturbances that plans for `sigma` [m] are judged under: the array's own focus (σ =
-/// 3.9 mm), σ 30 % less and 30 % more, the hand displaced by 3 mm, and the tracker's pose wrong by
-/// 5 mm.
+/// Returns the standard disturbances of plans for `sigma` [m]: the array's own focus (σ = 3.9 mm),
+/// σ 30 % less and 30 % more, the hand displaced by 3 mm, and the tracker's pose wrong by 5 mm.
 std::vector<Disturbance> disturbances(double sigma);
 
-/// score_plan() with every path moved by `shift` [m] in the plane: p̂(x) becomes p̂(x − shift), (Q8).
+/// Same as score_plan(), with every path moved by `shift` [m] in the plane: p̂(x) becomes
+/// p̂(x − shift), (Q8).
 Metrics score_shifted(const TargetField& target, const Plan& plan, int patch, double sigma,
                       const GainLaw& gain, const Vec2& shift);
 

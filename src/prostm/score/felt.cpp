@@ -8,11 +8,12 @@
 namespace prostm {
 namespace {
 
-constexpr int kPart = kLoopUnit;   // samples of a part of the loop, 0.2 ms at 40 kHz
-constexpr double kBeside = 10e-3;  // least distance of a ghost from anything to be felt [m]
-constexpr double kNothing = 0.1;   // share of the target's maximum below which it counts as nothing
+constexpr int kPart = kLoopUnit;          // samples per part of the loop, 0.2 ms at 40 kHz
+constexpr double kGhostDistance = 10e-3;  // least distance of a ghost from cells with a target [m]
+constexpr double kTargetShare =
+    0.1;  // share of the target's maximum from which a cell has a target
 
-/// Spreads the pressures of a loop over the whole raster, part by part; 0 off the skin.
+/// Copies the pressures of a loop to the whole raster, part by part; 0 off the skin.
 std::vector<double> on_raster(const TargetField& raster, const SkinSurface& skin,
                               const LoopPressure& pressure) {
   const auto parts = static_cast<std::size_t>(pressure.frames);
@@ -26,12 +27,12 @@ std::vector<double> on_raster(const TargetField& raster, const SkinSurface& skin
 }
 
 bool is_beside(const TargetField& target, double nothing, int row, int col) {
-  const int reach = static_cast<int>(std::floor(kBeside / target.cell));
+  const int reach = static_cast<int>(std::floor(kGhostDistance / target.cell));
   for (int j = std::max(0, row - reach); j <= std::min(target.rows - 1, row + reach); ++j) {
     for (int i = std::max(0, col - reach); i <= std::min(target.cols - 1, col + reach); ++i) {
       const std::size_t cell = target.index(j, i);
       if (target.skin[cell] != 0 && target.pressure[cell] >= nothing &&
-          std::hypot(j - row, i - col) * target.cell <= kBeside) {
+          std::hypot(j - row, i - col) * target.cell <= kGhostDistance) {
         return false;
       }
     }
@@ -112,7 +113,7 @@ FeltField FeelingBoundedSkin::feel(const TargetField& raster, double period, int
 }
 
 Ghosts ghosts_of(const TargetField& target, const std::vector<double>& percept) {
-  const double nothing = kNothing * max_pressure(target);
+  const double nothing = kTargetShare * max_pressure(target);
   const double largest = *std::max_element(percept.begin(), percept.end());
   Ghosts out;
   for (int row = 0; row < target.rows; ++row) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Skill of the percept of a plan that an array plays.
+/// Skill of the percept of a plan emitted by an array.
 
 #include <functional>
 
@@ -11,17 +11,17 @@
 
 namespace prostm {
 
-/// Lifts a plan onto the skin, compensates tilt and returns it as one loop. If the settings have no
-/// full scale, the plan's own largest pressure is used.
+/// Lifts a plan onto the skin, compensates tilt, and returns its samples for one loop. If the
+/// settings have no full scale, the plan's largest pressure is used.
 /// @throws std::invalid_argument for a plan without pressure anywhere, and as loop_samples() does.
 LoopSamples plan_loop(const Plan& plan, const TargetFrame& frame, const EmitSettings& settings,
                       double sample_rate);
 
-/// Returns skill_8 of the percept against the target of one patch: plan_loop() as `array` plays it
-/// with the solver Weighted in still air of 20 °C, felt by a FeelingSkin. Returns NaN for a plan or
-/// target without pressure, a loop that is silent throughout, a lap above kLongestFelt, if
-/// is_felt() is false, or if `go_on` returns false, which is asked often. Takes about 0.25 s for a
-/// hand.
+/// Returns skill_8 of the percept against the target of one patch: plan_loop() emitted by `array`
+/// with the solver Weighted in still air of 20 °C, and the percept of a FeelingSkin. Returns NaN
+/// for a plan or target without pressure, a loop that is silent throughout, a lap above
+/// kLongestFelt, if is_felt() is false, or if `go_on`, which is called often, returns false. Takes
+/// about 0.25 s for a hand.
 /// @throws std::invalid_argument as loop_samples() and loop_drives() do.
 double felt_skill(
     const Plan& plan, const TargetFrame& frame, int patch, const EmitSettings& settings,

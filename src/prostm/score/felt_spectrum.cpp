@@ -14,7 +14,7 @@ double felt_of(const SkinMotion& motion, int n, std::size_t cell) {
   return 0.5 * s * s * std::norm(motion.displacement(n)[cell]);
 }
 
-/// Returns the cell where the sum of the harmonics that `counts` is largest.
+/// Returns the cell where the sum of the harmonics for which `counts` is true is largest.
 template <class Counts>
 std::size_t strongest_of(const TargetField& raster, const SkinMotion& motion, bool skin_only,
                          Counts counts) {

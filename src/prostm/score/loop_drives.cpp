@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr int kWarmUp = 64;     // samples before the first, for the phases to settle
+constexpr int kWarmUp = 64;     // samples solved before the first, for the phases to settle
 constexpr double kFull = 0.99;  // |q| above which a drive counts as full
 
 Sounding sounding(const LoopSamples& loop, int k) {
@@ -23,7 +23,7 @@ Sounding sounding(const LoopSamples& loop, int k) {
   return Sounding(std::span(loop.sample).subspan(static_cast<std::size_t>(k) * foci, foci));
 }
 
-/// Computes the drives at their largest, and the acoustic pressure per intensity that each sample
+/// Computes the drives at full output, and the acoustic pressure per intensity that each sample
 /// then reaches [Pa]. @return false if `progress` stopped it.
 bool solve_all(const TransducerArray& array, const Medium& medium, const LoopSamples& loop,
                const FocusSettings& settings, const std::function<bool(int, int)>& progress,
@@ -65,7 +65,7 @@ void measure_power(const Eigen::MatrixXcd& drives, LoopDriveResult& out) {
   out.full_share = static_cast<double>((size > kFull).count()) / static_cast<double>(drives.size());
 }
 
-/// Plays the loop twice, so that the second round starts from the state in which it ends.
+/// Simulates the loop twice, so that the second pass starts from the state at its end.
 LoopDrives through_transducers(const Eigen::MatrixXcd& drives, const TransducerSettings& settings) {
   const auto transducers = static_cast<std::size_t>(drives.rows());
   TransducerDynamics dynamics(settings, transducers);

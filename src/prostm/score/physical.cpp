@@ -16,9 +16,9 @@ namespace prostm {
 namespace {
 
 constexpr int kSamplesLookedAt = 64;
-constexpr double kLoudEnough = 0.1;  // only focal points above this intensity are looked at
-constexpr int kSide = 13;            // points along each edge of the grid around a focal point
-constexpr double kStep = 0.75e-3;    // distance between them [m]
+constexpr double kLeastIntensity = 0.1;  // only focal points above this intensity are measured
+constexpr int kSide = 13;                // points along each edge of the grid around a focal point
+constexpr double kStep = 0.75e-3;        // distance between them [m]
 
 /// Returns the acoustic pressure squared on the grid around a focal point, row by row along y.
 std::array<double, static_cast<std::size_t>(kSide* kSide)> around(const PackedArray& packed,
@@ -47,7 +47,7 @@ double peak(double before, double here, double after) {
   return bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
 }
 
-/// Distance of the highest place from the grid's middle [m].
+/// Returns the distance of the highest point from the grid's centre [m].
 double offset_of(const std::array<double, static_cast<std::size_t>(kSide* kSide)>& square) {
   const auto at = static_cast<int>(std::max_element(square.begin(), square.end()) - square.begin());
   const int col = at % kSide, row = at / kSide;
@@ -63,7 +63,7 @@ double offset_of(const std::array<double, static_cast<std::size_t>(kSide* kSide)
   return kStep * std::hypot(x - half, y - half);
 }
 
-/// Positions of a loop's sounding focal points, every 0.7 mm of a path.
+/// Returns the positions of a loop's non-silent focal points, every 0.7 mm of a path.
 std::vector<Eigen::Vector3f> places_of(const LoopSamples& loop) {
   constexpr std::size_t kEvery = 4;  // samples
   std::vector<Eigen::Vector3f> places;
@@ -86,13 +86,13 @@ bool is_flat(const TargetField& raster) {
   return true;
 }
 
-/// Computes a PhysicalField. Cells may be wider than a lobe, so its largest values are searched on
-/// points 2 mm apart or less, and then on points 0.5 mm apart around the highest of these.
-class Looking {
+/// Computes a PhysicalField. Cells may be wider than a lobe, so the largest values are searched on
+/// points at most 2 mm apart, and then on points 0.5 mm apart around the highest of these.
+class FieldMeter {
  public:
-  Looking(const PackedArray& packed, const Medium& medium, const TargetField& raster,
-          const SkinSurface& skin, const LoopSamples& loop, const LoopDriveResult& drives,
-          int parts_of_loop, WorkerPool& pool)
+  FieldMeter(const PackedArray& packed, const Medium& medium, const TargetField& raster,
+             const SkinSurface& skin, const LoopSamples& loop, const LoopDriveResult& drives,
+             int parts_of_loop, WorkerPool& pool)
       : packed_(packed),
         medium_(medium),
         raster_(raster),
@@ -127,7 +127,7 @@ class Looking {
             static_cast<double>(found.frame[middle * frames + k]);
       }
     }
-    // a place also stands for its surroundings, which may be beside the paths where it is not
+    // the surroundings of a point may be beside the paths even if the point itself is not
     for (const Place& place : std::exchange(highest_, {})) {
       divide(place, 2.0 * kLook, 2 * kFiner, near);
     }
@@ -141,12 +141,12 @@ class Looking {
 
  private:
   struct Place {
-    std::size_t of;  // index in skin.cell of the cell whose normal it has
+    std::size_t of;  // index in skin.cell of the cell that provides the normal
     Vec2 x;          // in P
   };
   static constexpr double kLook = 2e-3;  // [m]
   static constexpr int kFiner = 4;
-  static constexpr std::size_t kHighest = 32;  // places of each kind that are looked at again
+  static constexpr std::size_t kHighest = 32;  // points of each kind that are refined
   static constexpr double kApart = kLook;      // least distance between them [m]
 
   static void divide(const Place& middle, double edge, int parts, std::vector<Place>& out) {
@@ -188,7 +188,7 @@ class Looking {
     return loop_pressure(packed_, medium_, basis_, points, frames, pool_);
   }
 
-  /// In the middles of all cells with skin. @pre is_flat(raster_)
+  /// Returns the pressure at the centres of all cells with skin. @pre is_flat(raster_)
   LoopPressure flat_pressure(int frames) {
     const Eigen::Matrix3d& axes = raster_.X_DP.linear();
     FlatRaster flat;
@@ -202,14 +202,14 @@ class Looking {
     return flat_loop_pressure(packed_, medium_, basis_, flat, skin_.cell, frames, pool_);
   }
 
-  /// Updates the largest values, and adds the highest places of each kind to `highest_`.
+  /// Updates the largest values, and adds the highest points of each kind to `highest_`.
   void look(const std::vector<Place>& at, const std::vector<Vec3>& p_D, const LoopPressure& found) {
     const auto take = [&](const std::vector<float>& value, auto&& counts, double& largest) {
       std::vector<std::size_t> order(at.size());
       std::iota(order.begin(), order.end(), std::size_t{0});
       std::sort(order.begin(), order.end(),
                 [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
-      // apart from each other, so that they belong to different lobes
+      // with a least distance, so that they belong to different lobes
       const std::size_t before = highest_.size();
       for (std::size_t i = 0; i < order.size() && highest_.size() < before + kHighest; ++i) {
         const Place& place = at[order[i]];
@@ -236,7 +236,7 @@ class Looking {
   LoopBasis basis_;
   WorkerPool& pool_;
   std::vector<Place> highest_;
-  double beside_ = 0.0;  // the largest of the envelope beside the paths
+  double beside_ = 0.0;  // largest value of the envelope beside the paths
 };
 
 }  // namespace
@@ -283,7 +283,7 @@ FocusAccuracy focus_accuracy(const PackedArray& packed, const LoopSamples& loop,
     for (int f = 0; f < loop.foci; ++f) {
       const FocusSample& focus = loop.sample[static_cast<std::size_t>(k * loop.foci + f)];
       const double intensity = static_cast<double>(focus.intensity);
-      if (intensity <= kLoudEnough) continue;
+      if (intensity <= kLeastIntensity) continue;
       const auto square = around(packed, focus.p_D.cast<double>(), X_DP, output);
       const double offset = offset_of(square);
       const double level =
@@ -309,7 +309,7 @@ PhysicalField physical_field(const PackedArray& packed, const Medium& medium,
   if (skin.cell.empty()) {
     throw std::invalid_argument("the raster has no skin; at least one cell must have a height");
   }
-  return Looking(packed, medium, raster, skin, loop, drives, parts, pool).field;
+  return FieldMeter(packed, medium, raster, skin, loop, drives, parts, pool).field;
 }
 
 Metrics score_physical(const TargetField& target, const std::vector<double>& field,

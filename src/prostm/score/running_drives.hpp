@@ -1,5 +1,5 @@
 #pragma once
-/// Drives of an array that plays focal points which go on: plans that take over from one another.
+/// Drives of an array for a continuous stream of focal points, across changes of the plan.
 
 #include <cstdint>
 #include <span>
@@ -10,12 +10,12 @@
 
 namespace prostm {
 
-/// Solves stretch after stretch of samples as loop_drives() solves a loop. Phases of focal points
-/// and the state of the transducers go on from one stretch to the next; all begins in silence.
+/// Solves block after block of samples like loop_drives() solves a loop. Phases of focal points and
+/// the state of the transducers carry over from block to block; the initial state is silence.
 class RunningDrives {
  public:
-  /// @param array, medium outlive this. @param settings their full scale must be given, since what
-  /// comes later is not known: samples that do not reach it are weaker.
+  /// @param array, medium must outlive this. @param settings must contain a full scale, since later
+  /// samples are not known in advance; samples that do not reach it are weaker.
   /// @throws std::invalid_argument as TransducerDynamics does, and for a full scale that is not
   /// above 0, or above 1e6 Pa, or foci not in 1 to 8.
   RunningDrives(const TransducerArray& array, const Medium& medium,
@@ -26,7 +26,7 @@ class RunningDrives {
   /// @throws std::invalid_argument as propagation_to() and solve_foci() do.
   void next(std::span<const FocusSample> samples, LoopDrives& out);
 
-  /// Samples so far that did not reach full scale.
+  /// Number of samples so far that did not reach full scale.
   std::int64_t short_samples() const { return short_samples_; }
 
  private:

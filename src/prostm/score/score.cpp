@@ -12,9 +12,9 @@
 namespace prostm {
 namespace {
 
-constexpr double kSpillShare = 0.1;  // share of max p* below which nothing is to be felt
+constexpr double kSpillShare = 0.1;  // share of max p* below which a cell counts as without target
 
-constexpr std::size_t kBandCells = 4096;  // summed by one thread
+constexpr std::size_t kBandCells = 4096;  // cells summed by one thread at a time
 
 /// Target and rendered field on the skin, both over max p*.
 struct SkinValues {
@@ -22,7 +22,7 @@ struct SkinValues {
   const std::vector<double>& rendered;
 };
 
-/// How two fields on the skin compare: see Metrics.
+/// Comparison of two fields on the skin; see Metrics.
 struct Comparison {
   double rmse = 0.0, correlation = 0.0, skill = 0.0, overlap = 0.0, spill = 0.0;
 };
@@ -95,7 +95,7 @@ std::vector<ClosestPoint> closest_points(const TargetField& raster, const Plan& 
   if (segments.empty()) return {};
   std::vector<ClosestPoint> out(raster.size());
   for_bands(pool, static_cast<std::size_t>(raster.rows), [&](std::size_t first, std::size_t end) {
-    PathSegments own = segments;  // it remembers the last search
+    PathSegments own = segments;  // a copy per band, since a search updates its state
     own.for_closest(raster, static_cast<int>(first), static_cast<int>(end),
                     [&](std::size_t cell, const ClosestPoint& point) { out[cell] = point; });
   });
@@ -137,7 +137,7 @@ Metrics Scorer::field(const std::vector<double>& rendered, double coverage) cons
   m.skill_0 = sharp.skill;
   m.overlap = sharp.overlap;
   m.spill = sharp.spill;
-  // the same skill after detail finer than b is blurred away
+  // the same skill after blurring detail finer than b
   m.skill_8 = compare({blurred_, on_skin(blur_.of(rendered))}, pool_).skill;
   return m;
 }

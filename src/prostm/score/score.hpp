@@ -1,6 +1,6 @@
 #pragma once
-/// Scores of a plan's quasi-static field (Eq. 1) against its target, with the controls that keep
-/// the numbers honest.
+/// Scores of a plan's quasi-static field (Eq. 1) against its target, and scores of controls for
+/// comparison.
 
 #include <cstdint>
 #include <functional>
@@ -27,7 +27,7 @@ struct Metrics {
   double skill_8 = 0;  ///< S_8.5: S_0 after a Gaussian blur of both by 8.5 mm, within the skin
   double overlap = 0;  ///< Σ min(p*, g p̂) / Σ max(p*, g p̂), g of skill_0
   double spill = 0;    ///< share of Σ p̂ on skin where p* < 0.1 max p*
-  /// S_8.5 of the percept of the field as an array plays it (felt_skill()); NaN if not computed.
+  /// S_8.5 of the percept of the field emitted by an array, felt_skill(); NaN if not computed.
   double felt_skill = std::numeric_limits<double>::quiet_NaN();
 };
 template <>
@@ -48,8 +48,8 @@ Metrics score_field(const TargetField& target, const std::vector<double>& render
 double plan_coverage(const TargetField& target, const Plan& plan, int patch, double sigma);
 
 /// Scores a plan on one patch through Eq. (1) with σ [m] and the γ of each path; all zeros for a
-/// target without pressure. @param instead pressures that replace the plan's own: with
-/// played_pressures() the score is that of the pressures as played.
+/// target without pressure. @param instead pressures that replace the plan's own, e.g.
+/// played_pressures() for the score of the pressures as played.
 Metrics score_plan(const TargetField& target, const Plan& plan, int patch, double sigma,
                    const GainLaw& gain, const SegmentPressures* instead = nullptr);
 
@@ -58,18 +58,18 @@ Metrics score_plan(const TargetField& target, const Plan& plan, int patch, doubl
 double weighted_rmse(const TargetField& target, const Plan& plan, int patch, double sigma,
                      const GainLaw& gain, const SegmentPressures* instead = nullptr);
 
-/// One row of the controls' table: the metrics of something that must lose to the plan.
+/// One row of the controls' table: the metrics of a rendering that a plan must outperform.
 struct Control {
   std::string name;
   Metrics metrics;
 };
 
-/// Returns the circles of the control "four circles at the mass centres", as in controls(); an
-/// empty plan for a target without pressure.
+/// Returns the circles of the control "four circles at the mass centres" of controls(); an empty
+/// plan for a target without pressure.
 Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, double length,
                              std::uint64_t seed);
 
-/// Scores the controls of a plan on a target, which must lose to it; empty for a target without
+/// Scores the controls of a target, which a plan must outperform; empty for a target without
 /// pressure:
 /// - "flat field": the mean p* everywhere (no path, so coverage 0);
 /// - "four circles at the mass centres": one about each centre of a weighted 4-means, each `length`
@@ -83,8 +83,8 @@ Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, dou
 ///   paths or foci, their mean moved to this target's centre of mass, their highest p_i/γ set to
 ///   max p*.
 /// @param sigma fall-off of a focal point [m].  @param gain γ of each path; circles take a lap of
-/// 1/draw_rate.  @param length of a circle, e.g. L [m].  @param progress is told after each field
-/// that is scored: a large raster takes seconds.
+/// 1/draw_rate.  @param length length of a circle, e.g. L [m].  @param progress called after each
+/// scored field, since a large raster takes seconds.
 std::vector<Control> controls(const TargetField& target, double sigma, const GainLaw& gain,
                               double length, const Plan* other, std::uint64_t seed,
                               const std::function<void(int done, int all)>& progress = {});

@@ -14,7 +14,7 @@ namespace {
 using B = GateBounds;
 using P = GateProblem;
 
-/// The hand's first problem.
+/// Returns the first problem of the hand.
 GateFinding look_at(const HandFrame& hands, const ScenePlace& place) {
   if (hands.hands.empty()) return {P::NoHand};
   if (hands.hands.size() > 1) return {P::TwoHands};
@@ -30,7 +30,7 @@ GateFinding look_at(const HandFrame& hands, const ScenePlace& place) {
   return {};
 }
 
-/// The field's first problem.
+/// Returns the first problem of the field.
 GateFinding look_at(const FieldShape& shape, const Stimulus& wanted) {
   if (wanted.maxima == 0) return {};
   if (shape.count() != wanted.maxima)
@@ -44,14 +44,15 @@ GateFinding look_at(const FieldShape& shape, const Stimulus& wanted) {
   return {};
 }
 
-/// A finding's value and bound, times `scale`.
+/// Returns a finding's value and bound, times `scale`.
 ComparedText compared(const GateFinding& f, double scale, int decimals = 0) {
   return compared_text(scale * f.value, scale * f.wanted, decimals);
 }
 
-/// "30 mm to the left and 12 mm towards you": where a palm must go that is `away` from the jets.
+/// Returns where to move a palm that is `away` from the jets, e.g. "30 mm to the left and 12 mm
+/// towards you".
 std::string way_back(const Vec2& away) {
-  constexpr double kLeast = 0.005;  // a shorter way is not told [m]
+  constexpr double kLeast = 0.005;  // shorter distances are omitted [m]
   const double x = 1e3 * away.x(), y = 1e3 * away.y();
   const std::string aside =
       fmt::format("{:.0f} mm to the {}", std::abs(x), x > 0.0 ? "left" : "right");
@@ -62,7 +63,7 @@ std::string way_back(const Vec2& away) {
   return aside + " and " + along;
 }
 
-/// Advice about the hand; empty where the problem is the field's.
+/// Returns advice about the hand; empty if the problem is one of the field.
 std::string hand_sentence(const GateFinding& f) {
   switch (f.problem) {
     case P::NoHand:
@@ -96,32 +97,32 @@ std::string hand_sentence(const GateFinding& f) {
   }
 }
 
-/// Advice about the field; empty where there is no such problem.
+/// Returns advice about the field; empty if there is no such problem.
 std::string field_sentence(const GateFinding& f) {
   switch (f.problem) {
     case P::Maxima:
       return fmt::format(
-          "Wait a second: there are {:.0f} places of pressure, not {:.0f}. If that stays, "
+          "Wait a second: there are {:.0f} places of pressure, not {:.0f}. If this persists, "
           "centre the jets under the hand.",
           f.value, f.wanted);
     case P::Balance: {
       const auto [value, bound] = compared(f, 100.0);
       return fmt::format(
-          "Wait a second: the weakest place has {} % of the strongest (at least {} %). If that "
-          "stays, centre the jets under the hand.",
+          "Wait a second: the weakest place of pressure has {} % of the strongest (at least {} %). "
+          "If this persists, centre the jets under the hand.",
           value, bound);
     }
     case P::Saddle: {
       const auto [value, bound] = compared(f, 100.0);
       return fmt::format(
-          "The places run together: the saddle between two has {} % of the strongest (at most {} "
-          "%). Spread the hand flat, or lower it.",
+          "The places of pressure blur into each other: the valley between two has {} % of the "
+          "strongest (at most {} %). Hold the hand flat, or lower it.",
           value, bound);
     }
     case P::Area: {
       const auto [value, bound] = compared(f, 1e4);
       return fmt::format(
-          "{} cm² are pressed, not {}: {}.", value, bound,
+          "The pressure covers {} cm², not {}: {}.", value, bound,
           f.value > f.wanted ? "lower the hand" : "lift the hand, or centre the jets");
     }
     case P::Force: {
@@ -139,15 +140,16 @@ std::string field_sentence(const GateFinding& f) {
 
 std::string sentence(const GateResult& result) {
   if (result.pass)
-    return fmt::format("The stimulus is as it should be: {} {} of pressure, {:.0f} cm², {:.2f} mN.",
+    return fmt::format("The stimulus is ready: {} {} of pressure, {:.0f} cm², {:.2f} mN.",
                        result.shape.count(), result.shape.count() == 1 ? "place" : "places",
                        1e4 * result.shape.area, 1e3 * result.shape.force);
   const std::string of_hand = hand_sentence(result.finding);
   if (!of_hand.empty()) return of_hand;
   const std::string of_field = field_sentence(result.finding);
   if (!of_field.empty()) return of_field;
-  return fmt::format("Hold on: {:.0f} % of the last second is as it should be (at least {:.0f} %).",
-                     100.0 * result.share, 100.0 * B::kShare);
+  return fmt::format(
+      "Wait: the stimulus was right for {:.0f} % of the last second (at least {:.0f} %).",
+      100.0 * result.share, 100.0 * B::kShare);
 }
 
 StimulusGate::StimulusGate(int updates, std::size_t max_cells)

@@ -7,13 +7,13 @@
 namespace prostm {
 namespace {
 
-constexpr std::uint32_t kAbove = 0xffffffff;  // parent of a cell that the level has not reached
+constexpr std::uint32_t kAbove = 0xffffffff;  // parent of a cell that is not yet joined
 
 constexpr std::array<Quantity<FieldShape>, 8> kQuantities{{
     {.name = "maxima",
      .unit = "",
-     .help =
-         "Maxima of the field: cells of 0.35 of the largest pressure that are alone within 18 mm.",
+     .help = "Maxima of the field: the highest cell within 18 mm, at least 0.35 of the largest "
+             "pressure.",
      .value = +[](const FieldShape& s) { return static_cast<std::int64_t>(s.count()); }},
     {.name = "largest_pa",
      .unit = "Pa",
@@ -21,7 +21,7 @@ constexpr std::array<Quantity<FieldShape>, 8> kQuantities{{
      .value = &FieldShape::largest},
     {.name = "balance",
      .unit = "",
-     .help = "The least of the maxima over the largest.",
+     .help = "Smallest of the maxima over the largest.",
      .value = &FieldShape::balance,
      .better = Better::More},
     {.name = "saddle",
@@ -95,7 +95,7 @@ FieldShape FieldShapeMeter::measure(const TargetField& field) {
 
 void FieldShapeMeter::find_maxima(const TargetField& field, FieldShape& out) const {
   const int reach = static_cast<int>(std::floor(kWindow / field.cell + 1e-9));
-  // of equal cells the first counts
+  // ties go to the first cell
   const auto is_largest = [&](int row, int col) {
     const std::size_t own = field.index(row, col);
     for (int r = std::max(0, row - reach); r <= std::min(field.rows - 1, row + reach); ++r) {
@@ -141,7 +141,7 @@ double FieldShapeMeter::join_level(const TargetField& field, const FieldShape& s
     holds_[field.index(static_cast<int>(std::lround(q.y())),
                        static_cast<int>(std::lround(q.x())))] = 1;
   }
-  // the level falls cell by cell; each joins the trees of its eight neighbours
+  // add the cells by falling pressure; each joins the trees of its eight neighbours
   for (const std::uint32_t cell : order_) {
     parent_[cell] = cell;
     const int row = static_cast<int>(cell) / field.cols, col = static_cast<int>(cell) % field.cols;

@@ -19,8 +19,8 @@ Vec3 skin_normal(const TargetField& field, int row, int col) {
       right += (field.height[at] - middle) / field.cell * a;
     }
   }
-  // slight damping sets undetermined slopes to 0 (across a row of cells, at a lone cell) and keeps
-  // the matrix regular where there is no skin
+  // slight damping sets undetermined slopes to 0 (across a row of cells, at an isolated cell), and
+  // keeps the matrix invertible where there is no skin
   normal_matrix.diagonal().array() += 1e-9;
   const Vec3 slope = normal_matrix.ldlt().solve(right);
   return Vec3(slope.x(), slope.y(), -1.0).normalized();

@@ -10,7 +10,7 @@
 namespace prostm {
 namespace {
 
-// poses from a file or a fit are orthonormal to about this
+// tolerance for the orthonormality of poses from files or fits
 constexpr double kOrthonormalTolerance = 1e-6;
 
 std::string text(double value) {
@@ -23,7 +23,7 @@ std::string cell_name(int row, int col) {
   return "row " + std::to_string(row) + ", column " + std::to_string(col);
 }
 
-// Eigen's allFinite subtracts, an invalid operation on infinities
+// replaces Eigen's allFinite, which subtracts: an invalid operation on infinities
 template <class Derived>
 bool all_finite(const Eigen::MatrixBase<Derived>& values) {
   return values.unaryExpr([](double x) { return std::isfinite(x); }).all();
@@ -71,7 +71,7 @@ void validate_shape(const TargetField& field) {
 void validate_plane(const Pose& X_DP) {
   if (!all_finite(X_DP.matrix())) throw std::invalid_argument("the plane's pose must be finite");
   const Eigen::Matrix3d R = X_DP.linear();
-  // entries of a rotation are at most 1; larger ones would only overflow in the product
+  // entries of a rotation are at most 1; checked first, since large ones would overflow the product
   const bool bounded = R.cwiseAbs().maxCoeff() < 2.0;
   if (!bounded ||
       (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() >
@@ -187,7 +187,7 @@ void fill_heights(TargetField& field) {
 }
 
 void fill_heights(TargetField& field, std::vector<std::uint32_t>& queue) {
-  constexpr std::uint8_t kReached = 2;  // marks cells without skin while the front passes
+  constexpr std::uint8_t kReached = 2;  // marks cells without skin that the front has reached
   queue.clear();
   queue.reserve(field.size());
 
@@ -200,7 +200,7 @@ void fill_heights(TargetField& field, std::vector<std::uint32_t>& queue) {
     return;
   }
 
-  // each cell hands its height to its row and column neighbours that have none yet
+  // each cell passes its height to its row and column neighbours that have none yet
   const auto cols = static_cast<std::uint32_t>(field.cols);
   const auto rows = static_cast<std::uint32_t>(field.rows);
   for (std::size_t head = 0; head < queue.size(); ++head) {

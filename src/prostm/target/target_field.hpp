@@ -1,5 +1,5 @@
 #pragma once
-/// The target: a pressure on the skin that is to be felt, projected on a plane and sampled on a
+/// The target: the pressure on the skin to be rendered, projected on a plane and sampled on a
 /// raster.
 
 #include <boost/container/static_vector.hpp>
@@ -11,7 +11,7 @@
 
 namespace prostm {
 
-/// The largest raster that is read or planned: 10⁶ cells, a 5 m palm at 5 mm.
+/// Maximum number of cells of a raster that can be read or planned: 10⁶, or 5 m × 5 m at 5 mm.
 inline constexpr std::size_t kMaxFieldCells = 1'000'000;
 
 /// The target pressure field T = {(x_i, p*(x_i))} of the paper's section IV-A on a regular raster
@@ -20,8 +20,8 @@ inline constexpr std::size_t kMaxFieldCells = 1'000'000;
 /// Row-major: the centre of cell (row, col) lies at origin + cell·(col, row) in P. `pressure` is
 /// any non-negative quantity (a plan scales with it); `height` is the skin's distance from the
 /// plane along its normal, positive away from the array, so that a point x of the plane is lifted
-/// to X_DP · (x, height); `weight` is how much the error of a cell counts when a plan is fitted to
-/// the field (presets `best` and `fast`); only the weights' ratios matter.
+/// to X_DP · (x, height); `weight` is the weight of a cell's error when a plan is fitted to the
+/// field (presets `best` and `fast`); only the ratios of the weights have an effect.
 struct TargetField {
   int rows = 0, cols = 0;
   double cell = 0.0;               ///< edge of a cell [m]
@@ -30,9 +30,9 @@ struct TargetField {
   std::vector<std::uint8_t> skin;  ///< rows·cols, 1 where there is skin
   std::vector<double> height;      ///< rows·cols [m], finite everywhere (see fill_heights)
   std::vector<double> weight;      ///< empty: 1 everywhere; else rows·cols, >= 0, dimensionless
-  /// Parts of the air's pressure, of either sign: that of the smoke that blows, and that of the
-  /// hand's own movement. The pressure is one of them or their sum, where that is above 0. Empty,
-  /// both, where they are not known apart; else rows·cols, 0 where there is no skin.
+  /// Signed parts of the air's pressure: that of the blowing smoke, and that of the hand's own
+  /// movement. The pressure is one of them or their sum, clamped at 0. Both are empty if the parts
+  /// are not known separately; else rows·cols, 0 where there is no skin.
   std::vector<double> smoke, movement;
   Pose X_DP = default_plane();  ///< the plane in frame D: normal is P's z axis
 
@@ -48,8 +48,8 @@ struct TargetField {
     return position(static_cast<int>(index / width), static_cast<int>(index % width));
   }
 
-  /// Sets the shape and clears every cell to no skin, pressure 0, height 0, without weights and
-  /// parts. Allocates only when it grows.
+  /// Sets the shape, resets every cell to no skin, pressure 0 and height 0, and removes weights and
+  /// parts. Allocates only when the raster grows.
   void resize(int new_rows, int new_cols);
 
   /// The plane parallel to the array, 200 mm above its centre.
@@ -73,12 +73,12 @@ double total_pressure(const TargetField& field);
 /// Largest weight on skin; 0 for a field without skin. @pre the field has weights.
 double max_weight(const TargetField& field);
 
-/// Continues the heights of the skin to the cells without skin: each takes the height of the
-/// nearest skin cell, by breadth-first spreading. So a path that bridges a gap between fingers
-/// stays near the skin. All heights become 0 if there is no skin.
+/// Extends the heights of the skin to the cells without skin: each gets the height of the nearest
+/// skin cell, by breadth-first search, so that a path that bridges a gap between fingers stays near
+/// the skin. All heights become 0 if there is no skin.
 void fill_heights(TargetField& field);
-/// The same for repeated calls: `queue` is scratch memory that is kept between calls; nothing is
-/// allocated once it holds rows·cols.
+/// Same, for repeated calls. @param queue scratch memory to keep between calls; nothing is
+/// allocated if its capacity is at least rows·cols.
 void fill_heights(TargetField& field, std::vector<std::uint32_t>& queue);
 
 /// Height at a point of the plane [m]: bilinear between cell centres, clamped to the raster's
@@ -88,7 +88,7 @@ double height_at(const TargetField& field, const Vec2& x);
 /// One frame of targets: a patch per hand, each with its own plane.
 inline constexpr int kMaxPatches = 2;
 struct TargetFrame {
-  double time = 0.0;  ///< time of the hand frame it was computed from [s]
+  double time = 0.0;  ///< time of the hand frame from which it was computed [s]
   boost::container::static_vector<TargetField, kMaxPatches> patches;
 };
 

@@ -1,5 +1,5 @@
 /// Path refinement of the textbook planner: the costs of Eqs. (2)–(5) and steepest descent with
-/// backtracking. Part of kernel.cpp, which compiles it once for each kind of machine.
+/// backtracking. Part of kernel.cpp, which compiles it once per instruction set.
 
 // clang-format off
 #if defined(PROSTM_TEXTBOOK_DESCENT) == defined(HWY_TARGET_TOGGLE)

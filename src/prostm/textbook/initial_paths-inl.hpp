@@ -1,5 +1,5 @@
 /// Path initialisation of the textbook planner: plain Lloyd, plain 2-opt, midpoint splits. Part of
-/// kernel.cpp, which compiles it once for each kind of machine.
+/// kernel.cpp, which compiles it once per instruction set.
 
 // clang-format off
 #if defined(PROSTM_TEXTBOOK_INITIAL_PATHS) == defined(HWY_TARGET_TOGGLE)
@@ -117,7 +117,7 @@ void update(const Points& p, const std::vector<int>& label, Points& centres) {
   }
 }
 
-/// Makes a closed polygon around clusters on a line, or around one or two clusters.
+/// Returns a closed polygon around clusters on a line, or around one or two clusters.
 Points ellipse(const Axis& axis, double low, double high) {
   constexpr int kVertices = 64;
   constexpr double kHalfWidth = 3.0;  // [mm]
@@ -222,7 +222,7 @@ std::vector<Tour> split(const Points& points, const Tour& whole, double max_leng
       open.push_back(*part);
     }
   }
-  // equally heavy tours are ordered by their first cluster
+  // tours of equal mass are ordered by their first cluster
   std::sort(leaves.begin(), leaves.end(), [&](const Tour& a, const Tour& b) {
     return std::pair(-mass(points, a), a.front()) < std::pair(-mass(points, b), b.front());
   });
@@ -233,7 +233,7 @@ std::vector<Tour> split(const Points& points, const Tour& whole, double max_leng
 /// ellipse for points on a line.
 void resample(const Points& points, const Tour& tour, int n, std::vector<double>& x,
               std::vector<double>& y) {
-  // the polygon: the tour itself, or an ellipse when it encloses nothing
+  // the polygon: the tour itself, or an ellipse if the tour encloses no area
   const Axis axis(points, tour);
   double low = HUGE_VAL, high = -HUGE_VAL, left = HUGE_VAL, right = -HUGE_VAL;
   Points polygon;

@@ -6,8 +6,8 @@
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/target/pressure_share.hpp"
 
-// The baseline is compiled for every kind of machine and the code is selected at run time, so that
-// one program runs everywhere and is as fast as one compiled for the machine at hand.
+// The baseline is compiled for every instruction set and dispatched at run time, so that one
+// program runs everywhere and is as fast as one compiled for the present processor.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "prostm/textbook/kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -33,7 +33,7 @@ double maximum_on_skin(const Field& field) {
 
 Points strong_points(const Field& field, double maximum, double weak) {
   Points points;
-  const double least = pressure_share(weak, 1.0);  // rounded as the cells are
+  const double least = pressure_share(weak, 1.0);  // rounded like the cells
   for (int j = 0; j < field.rows; ++j) {
     for (int i = 0; i < field.cols; ++i) {
       const auto at = static_cast<std::size_t>(j) * static_cast<std::size_t>(field.cols) +

@@ -1,6 +1,6 @@
 #pragma once
-/// The textbook planner's computation, on plain arrays. This header and its sources hold no Eigen
-/// type: they are compiled once for each kind of machine, on which Eigen's types may be aligned
+/// The textbook planner's computation, on plain arrays. This header and its sources contain no
+/// Eigen types: they are compiled once per instruction set, and Eigen's types may then be aligned
 /// differently than in the rest of the program. Lengths in mm from the centre of cell (0, 0).
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct Settings {
 };
 
 struct Path {
-  std::vector<double> x, y, pressure;  ///< p* at each point, not yet times γ
+  std::vector<double> x, y, pressure;  ///< the pressure is p* at each point, without γ
 };
 
 struct Result {

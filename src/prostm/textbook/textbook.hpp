@@ -1,6 +1,6 @@
 #pragma once
-/// The baseline of every planner benchmark: PRO-STM as a careful reader of the paper would program
-/// it, in double precision, with plain Lloyd from random points, plain 2-opt from a random tour,
+/// The baseline of every planner benchmark: a straightforward implementation of PRO-STM from the
+/// paper, in double precision, with plain Lloyd from random points, plain 2-opt from a random tour,
 /// midpoint splits, and steepest descent with backtracking. The costs, weights and decisions are
 /// those of docs/design/planner.md, preset paper.
 
@@ -9,8 +9,8 @@
 
 namespace prostm::textbook {
 
-/// Plans one target as Planner::plan does, but allocates as it goes. The settings' preset is
-/// ignored: violations are neither mended nor counted. @pre the target is valid (see validate()).
+/// Plans one target like Planner::plan(), but allocates. The settings' preset is ignored:
+/// violations are neither mended nor counted. @pre the target is valid (see validate()).
 inline PlanStatus plan(const TargetField& target, const PlanSettings& settings, Plan& plan,
                        PlanStats& stats) {
   Settings s;

@@ -32,7 +32,7 @@ Means means_of(std::span<const PointPair> points) {
   return means;
 }
 
-/// Rms distance of the points from the best line through them, in the frame where it is less [m].
+/// Rms distance of the points from the line that fits them best; the smaller of both frames' [m].
 double spread_beside_line(std::span<const PointPair> points, const Means& means) {
   Eigen::Matrix3d T = Eigen::Matrix3d::Zero(), D = Eigen::Matrix3d::Zero();
   for (const PointPair& pair : points) {

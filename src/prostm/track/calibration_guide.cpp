@@ -86,7 +86,7 @@ std::string CalibrationGuide::solve() {
 
 std::string CalibrationGuide::sentence() const {
   if (result_) {
-    return fmt::format("The pose leaves {:.1f} mm rms, {:.1f} mm at the worst mark.",
+    return fmt::format("Residual error of the pose: {:.1f} mm rms, {:.1f} mm at the worst mark.",
                        result_->rms * 1e3, result_->largest * 1e3);
   }
   const auto next = std::find_if(marks_.begin(), marks_.end(),

@@ -1,6 +1,6 @@
 #pragma once
-/// Guides the user through a calibration: marks on the array are touched one after the other with
-/// the tip of an index finger.
+/// Guides the user through a calibration, in which the tip of an index finger touches marks on the
+/// array one after the other.
 
 #include <optional>
 #include <span>
@@ -16,31 +16,32 @@ struct CalibrationMark {
   std::string name;
   Vec3 p_D = Vec3::Zero();  ///< [m]
   bool taken = false;
-  double spread = 0.0;  ///< rms spread of the fingertip while it was taken [m]
+  double spread = 0.0;  ///< rms spread of the fingertip while the mark was recorded [m]
 };
 
-/// The caller passes every frame of hands to watch() and calls the rest on demand. Has no thread
-/// and no clock.
+/// Collects fingertip positions and computes the tracker's pose. The caller passes every frame of
+/// hands to watch() and calls the rest on demand. Has no thread and no clock.
 class CalibrationGuide {
  public:
   /// Places marks at the corners of the transducers' outline; the user is at the front.
   /// @throws std::invalid_argument without transducers.
   explicit CalibrationGuide(std::span<const Vec3> transducers);
 
-  /// Takes in hands in T, some dozen times a second. @param time on any increasing clock [s].
+  /// Adds a frame of hands in T, dozens of times a second. @param time on any increasing clock [s].
   void watch(double time, const HandFrame& hands_T);
 
-  /// Takes the mean position of the fingertip over the last half second for a mark; a mark can be
-  /// taken again. Returns an empty string, or why not: no such mark, no hand or two hands, a finger
-  /// that moves (more than 5 mm rms). The tip is above the mark by the `radius` of its flesh.
+  /// Records the fingertip's mean position over the last half second for a mark; a mark can be
+  /// recorded again. Returns an empty string, or the reason for failure: no such mark, no hand or
+  /// two hands, a finger that moves (more than 5 mm rms). The tip is above the mark by its
+  /// `radius`.
   std::string take(int mark);
-  /// Finds the pose from the marks taken. Returns an empty string, or why not.
+  /// Computes the pose from the recorded marks. Returns an empty string, or the reason for failure.
   std::string solve();
 
   const std::vector<CalibrationMark>& marks() const { return marks_; }
-  /// The pose found by solve(), unless a mark was taken since.
+  /// The pose computed by solve(), unless a mark was recorded since.
   const std::optional<Calibration>& result() const { return result_; }
-  /// Says what to do next, or how well the pose fits.
+  /// Returns the next instruction for the user, or how well the pose fits.
   std::string sentence() const;
 
  private:

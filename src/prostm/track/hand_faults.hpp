@@ -11,16 +11,15 @@
 
 namespace prostm {
 
-/// The cause for which a frame, or one hand of a frame, is dropped. The first three cost the frame,
-/// the others one hand of it.
+/// Cause for dropping data: the first three drop a whole frame, the others a single hand.
 enum class HandFault : std::uint8_t {
   Unreadable,  ///< not JSON, or without a list of hands
   Time,        ///< the time is missing or not a number
-  Order,       ///< the time does not fit between the frames around: seen already, back, or astray
+  Order,       ///< the time does not fit between adjacent frames: repeated, earlier, or an outlier
   Member,      ///< a member is missing, of another type, or out of bounds
-  Fingers,     ///< a finger is missing, or there twice
-  Bones,       ///< a radius or a distance between joints that no hand has
-  Axes,        ///< axes or orientations that are not unit, or do not follow the bones
+  Fingers,     ///< a finger is missing or duplicated
+  Bones,       ///< a radius or a distance between joints is implausible
+  Axes,        ///< axes or orientations are not unit, or do not follow the bones
   Side,        ///< the joints are those of the other side's hand
   Twice,       ///< another hand of the frame has the same id
   Third        ///< the frame has two other hands
@@ -47,13 +46,13 @@ class HandError : public InputError {
 /// Frames and hands that were dropped, by cause.
 struct HandFaults {
   std::array<std::int64_t, kHandFaults> count{};  ///< one per HandFault
-  std::string first, last;                        ///< sentences about the first and the last one
+  std::string first, last;                        ///< the first and the last fault, as sentences
 
   std::int64_t frames() const;  ///< frames dropped
   std::int64_t hands() const;   ///< hands dropped from frames that were kept
   bool any() const { return frames() + hands() > 0; }
   void add(HandFault fault, const std::string& sentence);
-  /// Adds faults that came after these.
+  /// Adds faults that occurred after these.
   void add(const HandFaults& later);
 };
 

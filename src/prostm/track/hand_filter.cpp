@@ -14,7 +14,7 @@ double opened(double share, double squared_innovation, double scale) {
 
 void filter_joint(const TrackSettings& settings, double dt, std::size_t j, const Hand& last,
                   Hand& hand) {
-  // (H6): predict with the filtered velocity, correct by a share of what the prediction misses
+  // (H6): predict with the filtered velocity, correct by a share of the innovation
   const Vec3 predicted = last.position[j] + dt * last.velocity[j];
   const Vec3 innovation = hand.position[j] - predicted;
   const double alpha =

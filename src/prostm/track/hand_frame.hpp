@@ -54,7 +54,7 @@ struct Hand {
   std::int64_t id = 0;  ///< stays with a hand while it is tracked
   Side side = Side::Right;
   double confidence = 1.0;     ///< 0..1
-  std::uint32_t inferred = 0;  ///< bit 0: metacarpals were rebuilt, bit 1: the wrist was
+  std::uint32_t inferred = 0;  ///< bit 0: metacarpals are reconstructed, bit 1: the wrist is
   std::array<Vec3, kJointCount> position;     ///< [m]
   std::array<Quat, kJointCount> orientation;  ///< unit quaternions
   std::array<double, kJointCount> radius{};   ///< radius of the flesh around the joint [m]
@@ -63,8 +63,8 @@ struct Hand {
 
 struct HandFrame {
   double time = 0.0;  ///< [s]
-  /// `time` less the arrival of the tracker's frame that this is made from; 0 for hands computed
-  /// for exactly `time` [s]
+  /// `time` minus the arrival time of the tracker's frame that this one is computed from; 0 for
+  /// hands computed for exactly `time` [s]
   double age = 0.0;
   boost::container::static_vector<Hand, 2> hands;
 };

@@ -14,8 +14,7 @@ namespace {
 constexpr double kMinRadius = 0.003, kMaxRadius = 0.040;  // [m]
 constexpr double kMinBone = 0.008, kMaxBone = 0.120;      // [m]
 
-/// A length outside its bounds, in mm, with as many digits as tell it from the bound that it
-/// misses.
+/// Returns a length outside its bounds [mm], with enough digits to tell it from the violated bound.
 std::string outside(double length, double least, double most) {
   return compared_text(1e3 * length, 1e3 * (length < least ? least : most), 1).value;
 }
@@ -63,7 +62,7 @@ bool same(const Hand& a, const Hand& b) {
   return a.id == b.id && a.side == b.side;
 }
 
-/// The hand of that id and side in the frame before, or null.
+/// Returns the hand of the same id and side in the previous frame, or null.
 const Hand* known(const HandFrame* before, const Hand& hand) {
   if (before == nullptr) return nullptr;
   const auto found = std::find_if(before->hands.begin(), before->hands.end(),
@@ -71,7 +70,7 @@ const Hand* known(const HandFrame* before, const Hand& hand) {
   return found == before->hands.end() ? nullptr : &*found;
 }
 
-/// Distance of a hand from where it was [m]; of hands that were not there none is nearer.
+/// Returns how far a hand moved since the previous frame [m]; 0 if it was not in that frame.
 double moved(const HandFrame* before, const Hand& hand) {
   const Hand* was = known(before, hand);
   return was == nullptr ? 0.0 : (hand.position[kPalm] - was->position[kPalm]).norm();
@@ -85,7 +84,7 @@ void drop(const ReadHand& read, HandFault fault, const std::string& problem, Han
   }
 }
 
-/// Keeps the one that moved less of two hands with one id and side.
+/// Keeps the one that moved less of two hands with the same id and side.
 void drop_doubles(const HandFrame* before, std::vector<ReadHand>& hands, HandFaults& faults) {
   for (std::size_t a = 0; a < hands.size(); ++a) {
     for (std::size_t b = a + 1; b < hands.size();) {

@@ -21,20 +21,20 @@ struct HandProblem {
 /// matter. @pre finite numbers, unit quaternions.
 std::optional<HandProblem> hand_problem(const Hand& hand);
 
-/// Whether a hand lies as if z were up: before the tracker, not above it, with its palm towards
-/// −z. A tracker sees only hands above it.
+/// Whether a hand seems to be recorded with z up: in front of the tracker, not above it, with its
+/// palm towards −z. A tracker sees only hands above it.
 bool looks_z_up(const Hand& hand);
 
-/// Throws HandError with the node's place. @throws HandError.
+/// @throws HandError always, with the node's place in the document.
 [[noreturn]] void fail_as(HandFault fault, const JsonNode& node, const std::string& problem);
 
 /// Returns the member "hands" of a frame. @throws HandError unless it is an array.
 JsonNode hands_of(const JsonNode& frame);
 
 /// Reads the hands of a frame one by one with `read`, and checks them with hand_problem(). A hand
-/// with a fault is left out and counted; so are a second hand of the same id and side, and all but
-/// two hands. What was in the frame before decides which of them are kept.
-/// @param before the frame before, null without one.
+/// with a fault is dropped and counted; so are a second hand of the same id and side, and all but
+/// two hands. The hands that fit the previous frame best are kept.
+/// @param before the previous frame, or null.
 void read_hands(const JsonNode& hands, const std::function<Hand(const JsonNode&)>& read,
                 const HandFrame* before, HandFaults& faults, HandFrame& frame);
 

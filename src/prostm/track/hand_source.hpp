@@ -20,14 +20,14 @@ struct TrackerStatus {
   bool connected = false;
   std::int64_t frames = 0;   ///< frames received
   std::int64_t dropped = 0;  ///< received frames refused for their content
-  /// frames and hands refused for their content, by cause; a bad hand does not cost its frame
+  /// frames and hands refused for their content, by cause; the frame of a refused hand is kept
   std::array<std::int64_t, kHandFaults> faults{};
   std::int64_t dropped_hands = 0;  ///< hands refused for their content
-  std::int64_t repeated = 0;       ///< received frames whose time had been seen already
-  std::int64_t unsure = 0;         ///< hands not taken: below TrackSettings::least_confidence
-  std::int64_t frozen = 0;      ///< hands not taken: no joint moved for TrackSettings::freeze_time
-  std::int64_t reconnects = 0;  ///< connections after the first one
-  std::string sentence;         ///< for the user: the connection, and what is wrong
+  std::int64_t repeated = 0;       ///< received frames with a time stamp seen before
+  std::int64_t unsure = 0;         ///< hands ignored: below TrackSettings::least_confidence
+  std::int64_t frozen = 0;         ///< hands ignored: no joint moved for TrackSettings::freeze_time
+  std::int64_t reconnects = 0;     ///< connections after the first one
+  std::string sentence;            ///< for the user: the connection, and what is wrong
 };
 
 /// Contents of a recording's file, and what was dropped.
@@ -53,7 +53,7 @@ class HandSource {
   /// Time in the recording at the last sample(), NaN without one [s].
   virtual double recording_time() const { return std::numeric_limits<double>::quiet_NaN(); }
   /// Continues from `time` of the recording [s], clamped to its length, at the next sample(); hands
-  /// count as new. Does nothing without a recording.
+  /// get new ids. Does nothing without a recording.
   virtual void seek(double time) { static_cast<void>(time); }
 
   /// The contents of the recording that is played, null without a recording.
@@ -73,8 +73,8 @@ struct TrackSettings {
   double prediction = 0.015;
   double prediction_limit = 0.015;  ///< no joint is predicted farther than this [m]
   double max_gap = 0.060;  ///< a hand missing for longer than this between two frames is gone [s]
-  double least_confidence = 0.1;  ///< hands that the tracker trusts less are not taken, 0 to 1
-  /// a live tracker's hand that has not moved any joint for this long is not taken until it moves
+  double least_confidence = 0.1;  ///< hands of lower confidence are ignored, 0 to 1
+  /// a live tracker's hand of which no joint has moved for this long is ignored until it moves
   /// again [s]
   double freeze_time = 0.5;
   /// α of the filter on still joints at the pipeline's rate, (0, 1]; 1 = no filter
@@ -100,21 +100,21 @@ struct HandRecording {
 
 /// Plays a recording. Between frames positions are interpolated linearly and orientations by slerp,
 /// hand by hand (by id and side); velocities are central differences of joints smoothed over
-/// `smoothing_time` (H1), clamped. If `loop`, the recording starts again as a hand that leaves and
-/// comes back: for two steps [s] after its end there is no hand, so a caller with that step sees at
-/// least one frame without hands. No velocity crosses the seam. A hand whose tracker changed its id
-/// between two frames keeps its first id.
+/// `smoothing_time` (H1), clamped. If `loop`, the recording restarts after two steps [s] without a
+/// hand, so that a caller with that step sees at least one frame without hands; no velocity is
+/// computed across the restart. A hand whose tracker changed its id between two frames keeps its
+/// first id.
 /// @throws std::invalid_argument: a setting outside its bounds, no frames, times that do not
-/// increase from 0, two hands of the same id and side in one frame, several frames with no hand
-/// that is in two of them within max_gap.
+/// increase from 0, two hands of the same id and side in one frame, or several frames of which no
+/// two within max_gap have a hand in common.
 std::unique_ptr<HandSource> make_recorded_hand(HandRecording recording,
                                                const TrackSettings& settings, bool loop,
                                                double step);
 
-/// Plays a recording as a tracker would have sent it: only frames up to the sampled time are known.
+/// Plays a recording as a tracker would have sent it: only frames up to the sampled time are used.
 /// CausalTrack makes hands from them, with the age of the newest one. If `loop`, frames without
-/// hands follow the end, and the recording starts again once its last hands are gone and a caller
-/// with `step` [s] between samples has seen that.
+/// hands follow the end, and the recording restarts after its last hands are gone and a caller with
+/// `step` [s] between samples has seen a frame without hands.
 /// @throws std::invalid_argument as make_recorded_hand.
 std::unique_ptr<HandSource> make_replayed_hand(HandRecording recording,
                                                const TrackSettings& settings, bool loop,
@@ -141,7 +141,7 @@ struct ScriptedHandSettings {
 std::unique_ptr<HandSource> make_scripted_hand(const ScriptedHandSettings& settings,
                                                const TrackSettings& track);
 
-/// A hand that is held as participants of a study hold theirs: flat, fingers closed, palm towards
+/// A hand that is held as participants of a study hold theirs: flat, fingers together, palm towards
 /// the array, still. Its pose is that of `--hand study`.
 struct StudyHandSettings {
   double height = 0.215;  ///< height of the palm joint above the tracker [m], 0.05 to 0.60
@@ -154,7 +154,7 @@ struct StudyHandSettings {
 /// @throws std::invalid_argument for a setting outside its bounds.
 std::unique_ptr<HandSource> make_study_hand(const StudyHandSettings& settings);
 
-/// Removes the tracker's noise before the fluid meets the hands: each joint is predicted with its
+/// Removes the tracker's noise before hands enter the fluid: each joint is predicted with its
 /// filtered velocity and corrected by a share of the innovation; its velocity and orientation are
 /// low-passed. The shares grow with the innovation, so noise is damped and real motion passes: (H5)
 /// to (H7) of docs/design/hands.md. Without the filter, a still hand tracked with 0.3 mm of noise

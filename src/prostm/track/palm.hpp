@@ -1,11 +1,11 @@
 #pragma once
-/// The palm as a place to aim at: where it is, how it is turned, how large.
+/// Position, orientation and size of a palm.
 
 #include "prostm/track/hand_frame.hpp"
 
 namespace prostm {
 
-/// Read from the joints of a hand, in the hand's frame (D in the pipeline).
+/// A palm computed from the joints of a hand, in the hand's frame (D in the pipeline).
 struct Palm {
   Vec3 centre = Vec3::Zero();  ///< the palm joint [m]
   /// angle about z from +y to the direction from the wrist to the middle finger's knuckle [rad]
@@ -13,11 +13,11 @@ struct Palm {
   /// angle between the palm's plane (wrist, knuckles of index and little finger) and the level
   /// plane, 0 to π/2 [rad]
   double tilt = 0.0;
-  /// length from wrist to middle knuckle and breadth from index to little knuckle, each over that
-  /// of a hand of average size, and of both the mean
+  /// mean of two ratios to a hand of average size: length from wrist to middle knuckle, and breadth
+  /// from index to little knuckle
   double size = 1.0;
-  /// least of the four fingers' shares: distance from knuckle to tip over the sum of its bones; 1
-  /// is straight
+  /// least of the four fingers' ratios of the distance from knuckle to tip to the sum of the bones;
+  /// 1 is straight
   double straightness = 1.0;
 };
 

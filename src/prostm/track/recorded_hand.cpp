@@ -100,7 +100,7 @@ class RecordedHand final : public HandSource {
   };
 
   /// Lists the tracks present from each frame to the next: first the hands of the frame, then, if
-  /// there is room, hands that it misses for a moment.
+  /// there is room, hands that are missing for a moment.
   void list_active() {
     active_.resize(times_.size());
     for (std::size_t n = 0; n < tracks_.size(); ++n) {

@@ -1,4 +1,4 @@
-/// A recording as a stand-in for a tracker.
+/// A recording that is played as a tracker would have sent it.
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,7 @@ class ReplayedHand final : public HandSource {
   void seek(double time) override { target_ = std::clamp(time, 0.0, length_); }
 
  private:
-  /// Continues at recording time `from`, run time `shift` + `from`; frames shortly before it count.
+  /// Continues at recording time `from`, run time `shift` + `from`; uses frames shortly before it.
   void start(double shift, double from) {
     shift_ = shift;
     track_.clear();
@@ -75,7 +75,7 @@ class ReplayedHand final : public HandSource {
   double shift_ = 0.0;                                  // run time less recording time [s]
   double recording_time_ = 0.0;                         // at the last sample [s]
   std::optional<double> target_;                        // to be sampled next [s]
-  std::size_t next_ = 0;                                // next frame to come in
+  std::size_t next_ = 0;                                // next frame to add
   HandFrame blank_;           // the latest frame after the recording's end, without hands
   double interval_ = 9.1e-3;  // mean interval of frames [s]
   std::int64_t starts_ = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// The files of the page, as they were built from web/ and put into the program.
+/// The files of the page, built from web/ and embedded in the program.
 
 #include <span>
 #include <string_view>
@@ -12,7 +12,7 @@ struct PageFile {
   std::span<const unsigned char> bytes;  ///< the whole file
 };
 
-/// Every file of the page; none when the program was built without it (PROSTM_PAGE=OFF).
+/// All files of the page; none if the program was built without it (PROSTM_PAGE=OFF).
 std::span<const PageFile> page_files();
 
 }  // namespace prostm

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The fault of a message; caught where the message is read.
+/// An error in a message; caught in read_page_message().
 struct Wrong : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -47,7 +47,7 @@ double number(const Json& json, const char* name, double low, double high) {
   return checked(member(json, name), name, low, high);
 }
 
-/// The place of a member's text in a list of names.
+/// The enum value of a member, whose text is one of `names`.
 template <class Enum, std::size_t N>
 Enum choice(const Json& json, const char* name, const char* const (&names)[N]) {
   const std::string value = text(json, name);
@@ -117,16 +117,16 @@ CalibrationMessage read_calibration(const Json& json) {
   return m;
 }
 
-/// Reads the words of participants about themselves: few texts, short ones.
+/// Reads participants' answers about themselves: a few short texts.
 nlohmann::ordered_json read_about(const Json& json) {
   constexpr std::size_t kMost = 20, kLongest = 200;
   const Json& about = member(json, "about");
   if (!about.is_object() || about.size() > kMost)
-    throw Wrong(fmt::format("\"about\" must be an object of {} texts at most", kMost));
+    throw Wrong(fmt::format("\"about\" must be an object of at most {} texts", kMost));
   nlohmann::ordered_json texts = nlohmann::ordered_json::object();
   for (const auto& [name, value] : about.items()) {
     if (!value.is_string() || value.get_ref<const std::string&>().size() > kLongest)
-      throw Wrong(fmt::format("what is \"about\" must be texts of {} bytes at most", kLongest));
+      throw Wrong(fmt::format("texts in \"about\" must have at most {} bytes", kLongest));
     texts[name] = value.get<std::string>();
   }
   return texts;

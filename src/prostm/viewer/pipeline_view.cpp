@@ -14,7 +14,7 @@ namespace {
 
 using viewer::Json;
 
-constexpr const char* kNoTracker = "only hands of a tracker have a pose that can be found";
+constexpr const char* kNoTracker = "only a tracker can be calibrated";
 
 }  // namespace
 
@@ -28,22 +28,22 @@ struct PipelineView::Impl {
 
   LiveLink& link;
   const ViewHello hello;
-  const LiveSettings start;  // of the run
+  const LiveSettings start;  // initial settings of the run
   viewer::FrameMaker frames;
   viewer::CommandQueue commands;
-  std::uint32_t hand_holder = 0;  // the page that holds the hand, 0: none
-  bool known = false;             // the run has begun
+  std::uint32_t hand_holder = 0;  // page that holds the hand; 0: none
+  bool known = false;             // whether the run has begun
   PageHandState told_hand = PageHandState::Free;
   std::uint32_t told_holder = 0;
   Advice told_advice;
   std::optional<CalibrationGuide> calibration;
-  std::uint32_t calibrator = 0;       // the page that it listened to last, 0: that one is gone
-  Pose pose_kept = Pose::Identity();  // of the tracker: when it began, or what was saved since
+  std::uint32_t calibrator = 0;       // last page in control; 0: it has disconnected
+  Pose pose_kept = Pose::Identity();  // tracker pose to restore: the initial or last saved one
   bool calibration_saved = false, calibration_changed = false;
 
   std::string ask(const LiveCommand& command) {
     const bool takes = commands.add(command, viewer::CommandQueue::Clock::now());
-    return takes ? "" : "the run is busy with what was asked before; try again";
+    return takes ? "" : "the run is busy with earlier commands; try again";
   }
   std::string take(std::uint32_t page, const SetMessage& m);
   std::string take(std::uint32_t page, const TransportMessage& m);
@@ -60,8 +60,8 @@ struct PipelineView::Impl {
   std::string end_calibration(std::uint32_t page);
   void look_at_finger();
   std::string take(std::uint32_t, const RateMessage&) { return {}; }
-  std::string take(std::uint32_t, const StudyAct&) { return "this run is no study"; }
-  std::string take(std::uint32_t, const PageReport&) { return "this run is no study"; }
+  std::string take(std::uint32_t, const StudyAct&) { return "this run is not a study"; }
+  std::string take(std::uint32_t, const PageReport&) { return "this run is not a study"; }
 };
 
 std::string PipelineView::Impl::take(std::uint32_t page, const SetMessage& m) {
@@ -102,13 +102,13 @@ std::string PipelineView::Impl::take(std::uint32_t page, const TransportMessage&
 
 std::string PipelineView::Impl::take(std::uint32_t page, const HandMessage& m) {
   if (m.release) {
-    // a page cannot release what another one holds
+    // a page cannot release another page's hand
     if (page != hand_holder) return {};
     link.page_hand->release(m.hidden);
     hand_holder = 0;
     return {};
   }
-  // also while it has lapsed: two pages whose timers are late must not pass it to and fro
+  // also while it has lapsed: two pages with slow timers must not alternate
   const bool anothers = hand_holder != 0 && hand_holder != page;
   if (anothers && !m.take) return "another page has the hand; switch it on here to take it";
   hand_holder = page;
@@ -125,11 +125,11 @@ std::string PipelineView::Impl::take(std::uint32_t page, const HandMessage& m) {
 std::string PipelineView::Impl::begin_calibration() {
   const LiveState& state = link.control.state();
   if (!state.tracker) return kNoTracker;
-  // one that begins anew keeps what the one before kept, not what it tried
+  // a restarted calibration restores the kept pose, not a tried one
   if (!calibration) pose_kept = state.X_DT;
   calibration.emplace(hello.transducers);
   calibration_saved = false;
-  // a finger is going to touch the array
+  // a finger will touch the array
   link.mute->set(MuteReason::Calibration, true);
   return {};
 }
@@ -137,8 +137,8 @@ std::string PipelineView::Impl::begin_calibration() {
 std::string PipelineView::Impl::take_mark(int mark) {
   const RunSnapshot& run = link.snapshots.run();
   if (!link.control.state().tracker) return kNoTracker;
-  if (run.page_hand_in_charge()) return "let go of the page's hand first";
-  if (run.paused) return "the run is paused; let it go on first";
+  if (run.page_hand_in_charge()) return "switch the page's hand off first";
+  if (run.paused) return "the run is paused; resume it first";
   return calibration->take(mark);
 }
 
@@ -163,7 +163,7 @@ std::string PipelineView::Impl::save_calibration() {
   return {};
 }
 
-/// Ends a calibration; a pose that was not saved is dropped.
+/// Ends a calibration and discards a pose that was not saved.
 std::string PipelineView::Impl::end_calibration(std::uint32_t page) {
   LiveCommand pose{LiveCommand::Kind::TrackerPose, page};
   pose.X_DT = pose_kept;
@@ -233,7 +233,7 @@ std::string PipelineView::hello(std::uint32_t page, Room) {
 bool PipelineView::refresh_state(Room room, std::string& out) {
   if (room == Room::Guest) return false;
   Impl& i = *impl_;
-  // nobody is left to end it
+  // no page is left to end it
   if (i.calibration && i.calibrator == 0 && i.end_calibration(0).empty())
     i.calibration_changed = true;
   const auto now = viewer::CommandQueue::Clock::now();
@@ -241,7 +241,7 @@ bool PipelineView::refresh_state(Room room, std::string& out) {
   if (fresh) i.commands.answered(now);
   i.commands.hand_over(now);
   const PageHandState hand = i.link.snapshots.run().page_hand.state;
-  i.known = i.known || fresh;  // before the run begins there is nothing to tell
+  i.known = i.known || fresh;  // before the run begins there is no state
   const bool same_hand = hand == i.told_hand && i.hand_holder == i.told_holder;
   const Advice advice = i.link.snapshots.run().advice;
   const bool same = same_hand && advice == i.told_advice;

@@ -1,5 +1,5 @@
 #pragma once
-/// A run, as the server shows and steers it.
+/// A run as a source for the server, which shows and controls it.
 
 #include <memory>
 #include <string>
@@ -9,18 +9,18 @@
 
 namespace prostm {
 
-/// The facts that a page is told once.
+/// Constant facts, sent to a page once.
 struct ViewHello {
   std::string version;             ///< of prostm
-  std::string device;              ///< name of what plays
-  std::string array;               ///< name
+  std::string device;              ///< name of the device
+  std::string array;               ///< name of the array
   std::vector<Vec3> transducers;   ///< in D [m]
-  Vec3 box_corner = Vec3::Zero();  ///< of the smoke, in D [m]
+  Vec3 box_corner = Vec3::Zero();  ///< corner of the smoke's box in D [m]
   double box_edge = 0.0;           ///< [m]
 };
 
-/// Everything expensive about being looked at (the rendered field, its metrics, messages) happens
-/// here, on the server's thread.
+/// Does the expensive work for viewers (rendering the field, metrics, messages) on the server's
+/// thread.
 class PipelineView final : public ViewSource {
  public:
   /// @param link must outlive this.

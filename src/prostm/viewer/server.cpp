@@ -24,7 +24,7 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using viewer::Clock;
 
-constexpr auto kAcceptPause = std::chrono::milliseconds(100);  // when there are no descriptors left
+constexpr auto kAcceptPause = std::chrono::milliseconds(100);  // when file descriptors run out
 constexpr auto kIdlePause = std::chrono::milliseconds(100);    // between ticks without a page
 
 asio::ip::address listen_address(const std::string& text) {
@@ -37,11 +37,11 @@ asio::ip::address listen_address(const std::string& text) {
   return address;
 }
 
-/// Listens on one port; on what is wrong, not listening.
+/// Listens on one port. Returns the error if it cannot.
 boost::system::error_code listen_on(tcp::acceptor& acceptor, const tcp::endpoint& endpoint) {
   boost::system::error_code wrong, ignored;
   acceptor.open(endpoint.protocol(), wrong);
-  // so that a run can begin on the port of one that has just ended
+  // so that a run can use the port of one that has just ended
   if (!wrong) acceptor.set_option(tcp::acceptor::reuse_address(true), wrong);
   if (!wrong) acceptor.bind(endpoint, wrong);
   if (!wrong) acceptor.listen(asio::socket_base::max_listen_connections, wrong);
@@ -94,7 +94,7 @@ struct ViewServer::Impl {
     }
     throw InputError(
         fmt::format("the page cannot be served at {} port {}: {}; give another "
-                    "--view-port (0 is any that is free) or --view-address",
+                    "--view-port (0: any free port) or --view-address",
                     address.to_string(), first, wrong.message()));
   }
 
@@ -105,7 +105,7 @@ struct ViewServer::Impl {
           std::make_shared<viewer::Session>(std::move(socket), hub)->run();
         return accept();
       }
-      // out of descriptors, say: others may go in the meantime
+      // e.g. out of file descriptors: others may close meanwhile
       pause.expires_after(kAcceptPause);
       pause.async_wait([this](boost::system::error_code stopped) {
         if (!stopped) accept();
@@ -113,7 +113,7 @@ struct ViewServer::Impl {
     });
   }
 
-  /// Everything that happens by the clock, at the rate of the page that wants the most.
+  /// Does the periodic work, at the highest rate requested by a page.
   void tick() {
     timer.expires_at(tick_at);
     timer.async_wait([this](boost::system::error_code stopped) {
@@ -126,7 +126,7 @@ struct ViewServer::Impl {
       const Clock::duration period = rate > 0.0 ? std::chrono::duration_cast<Clock::duration>(
                                                       std::chrono::duration<double>(1.0 / rate))
                                                 : Clock::duration(kIdlePause);
-      // keeps its pace, unless it has fallen behind
+      // keeps the rate, unless it has fallen behind
       tick_at = std::max(tick_at + period, now);
       tick();
     });
@@ -164,7 +164,7 @@ struct ViewServer::Impl {
   tcp::acceptor acceptor{io};
   asio::steady_timer timer{io}, pause{io};
   Clock::time_point tick_at;
-  std::string failure;  // once `failed`
+  std::string failure;  // valid once `failed` is set
   std::atomic<bool> failed{false};
   std::thread thread;
 };
@@ -182,7 +182,7 @@ int ViewServer::port() const {
 std::string ViewServer::url() const {
   const auto address = impl_->acceptor.local_endpoint().address();
   std::string host = address.to_string();
-  // an address that stands for all of this machine's cannot be visited
+  // a wildcard address cannot be visited
   if (address.is_unspecified()) host = address.is_v6() ? "::1" : "127.0.0.1";
   return fmt::format("http://{}/", HostPort{host, static_cast<std::uint16_t>(port())}.text());
 }

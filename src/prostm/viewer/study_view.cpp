@@ -17,10 +17,10 @@ namespace {
 
 using viewer::Json;
 
-/// A visible page reports twice a second; one that is silent for so long has stopped [s].
+/// A visible page reports twice a second; one without a report for this time has stopped [s].
 constexpr double kReportAge = 3.0;
 
-/// Whether the problem is the hand's, so that it tells nothing of the stimulus.
+/// Whether the problem concerns the hand, so that it does not reveal the stimulus.
 bool is_of_hand(GateProblem problem) {
   return problem > GateProblem::None && problem < GateProblem::Maxima;
 }
@@ -35,7 +35,7 @@ Json jets_json(const std::string& scene, const PipelineSettings& settings) {
   return jets;
 }
 
-/// How an answer is given, from which both pages make their buttons and keys.
+/// The form of answers, from which both pages make their buttons and keys.
 Json controls_json(const Task& task) {
   const TaskTraits& traits = task.traits();
   return {{"form", name_of(traits.form)},
@@ -44,7 +44,7 @@ Json controls_json(const Task& task) {
           {"intervals", traits.intervals}};
 }
 
-/// The number of the answer that pages get as true: yes, or the second interval.
+/// The number of the answer that pages receive as true: yes, or the second interval.
 int truth_of(const Task& task) {
   return task.traits().form == AnswerForm::Interval ? 2 : 1;
 }
@@ -79,7 +79,7 @@ bool is_allowed(Room room, const StudyAct& act, AnswersFrom answers) {
          act.what == Do::Withdraw;
 }
 
-/// How a plan is played.
+/// Emission of a plan.
 std::optional<StudyPlayed> played_of(const PlanSnapshot& plan) {
   if (!plan.planned || !plan.settings) return std::nullopt;
   StudyPlayed out;
@@ -118,7 +118,7 @@ StudyView::StudyView(LiveLink& link, ViewHello hello, StudySession& session,
       session_(session),
       rehearsal_(std::move(rehearsal)),
       markers_(markers) {
-  link_.snapshots.watch(true);  // the session looks, whether pages do or not
+  link_.snapshots.watch(true);  // the session needs snapshots, even without pages
   link_.mute->set(MuteReason::Study, true);
 }
 
@@ -138,9 +138,8 @@ StudySight StudyView::sight() {
   return s;
 }
 
-/// Returns, of several pages, the one that lacks least. Browsers slow the timers of hidden pages
-/// down, so that these need not report again. A rehearsal has nobody to look at a page, and needs
-/// none.
+/// Returns the page with the fewest unmet needs. The last report of a hidden page remains valid,
+/// since browsers slow down its timers. A rehearsal needs no page.
 ParticipantPage StudyView::participants_page(double time) const {
   const PageReport full{true, PageNoise::Playing, true};
   if (rehearsal_) return {true, full};
@@ -180,7 +179,7 @@ bool StudyView::is_asked(const StudyWanted& wanted) const {
          wanted.level == asked_.level && wanted.standard == asked_.standard;
 }
 
-/// Lifts the study's mute, or sets it. What sounds is named before.
+/// Sets or lifts the study's mute. The presentation must be set before.
 void StudyView::let_sound(bool sound) {
   if (sound && !sounds_ && markers_ != nullptr)
     markers_->present(presentation_of(session_, ++presentations_), played_);
@@ -188,7 +187,7 @@ void StudyView::let_sound(bool sound) {
   link_.mute->set(MuteReason::Study, !sound);
 }
 
-/// Asks the run for what is wanted, where that has changed.
+/// Requests the wanted stimulus from the run, if it has changed.
 void StudyView::present(const StudyWanted& wanted) {
   let_sound(wanted.sound);
   if (session_.closed()) closed_.store(true, std::memory_order_relaxed);
@@ -206,7 +205,7 @@ void StudyView::present(const StudyWanted& wanted) {
   settings->version = settings_ ? settings_->version + 1 : 1;
   LiveCommand command{LiveCommand::Kind::Configure};
   command.settings = settings;
-  if (!link_.control.ask(command)) return;  // busy: at the next tick
+  if (!link_.control.ask(command)) return;  // busy: retry at the next tick
   settings_ = std::move(settings);
   asked_ = wanted;
   problem_.clear();
@@ -218,7 +217,7 @@ void StudyView::refresh(ViewFrame& frame, ViewNews& news) {
   frame.sequence = sequence;
   news = news_;
   if (!session_.protocol().study.blind) return;
-  // smoke and hands are all that a participant sees in training; the rest tells the method
+  // in training, a participant sees only smoke and hands; the rest would reveal the method
   frame.path_count = frame.field_count = 0;
   frame.gate.reset();
   std::fill(frame.numbers.begin(), frame.numbers.end(), std::numeric_limits<float>::quiet_NaN());
@@ -244,8 +243,8 @@ bool StudyView::refresh_state(Room room, std::string& state) {
   return true;
 }
 
-/// The part that both pages are told: it depends on nothing that is presented. `interval` counts
-/// intervals, whichever is the level's.
+/// The part for both pages, which does not depend on the stimulus. `interval` counts intervals,
+/// regardless of which one has the level.
 Json StudyView::both(const char* room) const {
   const Protocol& p = session_.protocol();
   Json json = {{"type", "study"},
@@ -325,7 +324,7 @@ Json StudyView::participant() const {
 
 std::string StudyView::act(Room room, const StudyAct& act) {
   if (!is_allowed(room, act, session_.protocol().trials.answers))
-    return "the experimenter does that";
+    return "only the experimenter can do that";
   const std::string problem = session_.take(act, sight());
   present(session_.wanted());
   return problem;
@@ -346,11 +345,11 @@ std::string StudyView::take(std::uint32_t page, const PageMessage& message) {
   const bool steers_hand =
       std::holds_alternative<HandMessage>(message) || std::holds_alternative<MuteMessage>(message);
   if (room == Room::Main && steers_hand) return run_.take(page, message);
-  return "the settings of a study stand in its protocol";
+  return "the settings of a study are set by its protocol";
 }
 
 bool StudyView::next_refusal(std::uint32_t&, std::string&) {
-  return false;  // those of the run are the session's problem
+  return false;  // refusals of the run are reported by the session
 }
 
 void StudyView::forget(std::uint32_t page) {

@@ -1,6 +1,6 @@
 #pragma once
-/// A study, as the server shows it to the experimenter and to the participant, and leads the run
-/// through it.
+/// A study as a source for the server, which shows it to the experimenter and the participant, and
+/// runs it.
 
 #include <atomic>
 #include <map>
@@ -18,24 +18,24 @@
 
 namespace prostm {
 
-/// The day's clock, and a clock that never jumps, with no hand and nothing in force.
+/// The wall clock and the steady clock, with no hand and no stimulus in force.
 StudySight study_time();
 
-/// The experimenter is in the main room. The participant is the guest, who gets only what the
-/// protocol shows: nothing that they are sent depends on what is presented, the picture during
-/// training excepted. In a blind study nothing that the experimenter is sent does either.
+/// The experimenter is in the main room. The participant is the guest and gets only what the
+/// protocol allows: except for the picture during training, no message to the participant depends
+/// on the stimulus. In a blind study the same holds for the experimenter.
 class StudyView : public ViewSource {
  public:
-  /// @param session is used by the server's thread from now on. All must outlive this.
-  /// @param rehearsal that stands in for people, if any does.
-  /// @param markers that are written down with the session; null: none.
+  /// @param session used only by the server's thread from now on. @param rehearsal answers instead
+  /// of people, if given. @param markers recorded with the session; null: none. All must outlive
+  /// this.
   StudyView(LiveLink& link, ViewHello hello, StudySession& session,
             std::optional<Rehearsal> rehearsal = {}, MarkerSender* markers = nullptr);
 
-  /// The oldest sentence for the experimenter that was not read yet; false without one. The
+  /// Takes the oldest pending message for the experimenter; false if no message is pending. For the
   /// program's thread.
   bool next_news(std::string& sentence) { return news_for_terminal_.pop(sentence); }
-  /// Somebody has closed a session that is over, or a rehearsal is done. Any thread.
+  /// Whether a finished session was closed, or a rehearsal is done. Thread-safe.
   bool closed() const { return closed_.load(std::memory_order_relaxed); }
 
   void watch(bool) override {}
@@ -65,21 +65,21 @@ class StudyView : public ViewSource {
   StudySession& session_;
   std::optional<Rehearsal> rehearsal_;
   MarkerSender* markers_;
-  bool sounds_ = false;                // not muted for the study
+  bool sounds_ = false;                // whether the study's mute is off
   std::optional<StudyPlayed> played_;  // emission of the newest plan
   std::uint32_t presentations_ = 0;
   struct OpenPage {
     Room room = Room::Main;
-    std::optional<PageReport> report;  // the newest
-    double reported = 0.0;             // when it came [s]
+    std::optional<PageReport> report;  // newest report
+    double reported = 0.0;             // time of the report [s]
   };
   std::map<std::uint32_t, OpenPage> pages_;
   SpscRing<std::string> news_for_terminal_{64};
-  ViewFrame frame_;  // the newest
+  ViewFrame frame_;  // newest frame
   ViewNews news_;
-  StudyWanted asked_;                             // of the run, last
-  std::shared_ptr<const LiveSettings> settings_;  // for it; nothing before the first
-  std::string problem_;                           // with them
+  StudyWanted asked_;                             // last stimulus requested of the run
+  std::shared_ptr<const LiveSettings> settings_;  // settings for asked_; null before the first
+  std::string problem_;                           // problem with these settings
   std::string told_[std::size(kRooms)];
   std::atomic<bool> closed_{false};
 };

@@ -57,7 +57,7 @@ enum Section : std::uint16_t { kRun = 1, kNumberList, kHands, kSmoke, kFields, k
 
 constexpr std::size_t kHeaderBytes = 16, kLengthAt = 12, kHandPadding = 16;
 
-/// Appends values to a message and fills in lengths when they are known.
+/// Appends values to a message, and fills in lengths once they are known.
 class Writer {
  public:
   explicit Writer(std::vector<std::uint8_t>& out) : out_(out) { out_.clear(); }
@@ -93,7 +93,7 @@ class Writer {
     if (n > 0) std::memcpy(out_.data() + at, data, n);
   }
   std::vector<std::uint8_t>& out_;
-  std::size_t start_ = 0;  // of the section's contents
+  std::size_t start_ = 0;  // start of the section's contents
 };
 
 void write_hands(const ViewFrame& frame, Writer& w) {

@@ -1,4 +1,4 @@
-"""Finding devices and trackers with prostm devices, and how a device brings its array."""
+"""Device and tracker discovery with prostm devices, and the arrays that devices imply."""
 
 import json
 import socket
@@ -19,7 +19,7 @@ def free_port():
         return probe.getsockname()[1]
 
 
-def test_all_that_is_here_is_looked_for_in_columns_of_100_letters(prostm):
+def test_looks_for_everything_and_prints_at_most_100_columns(prostm):
     start = time.monotonic()
     lines = prostm("devices").stdout.splitlines()
     assert time.monotonic() - start < 10, "looks are bounded, and go side by side"
@@ -36,7 +36,7 @@ def test_all_that_is_here_is_looked_for_in_columns_of_100_letters(prostm):
         assert line.split()[:2] == [row["role"], row["kind"]]
 
 
-def test_only_what_is_named_is_looked_at(prostm, free_port):
+def test_looks_only_for_the_named_devices(prostm, free_port):
     (row,) = rows_of(prostm, f"leap://127.0.0.1:{free_port}", status=1)
     assert row["found"] is False and "nothing answers" in row["words"]
     assert "UltraleapTrackingWebSocket" in row["words"]
@@ -44,7 +44,7 @@ def test_only_what_is_named_is_looked_at(prostm, free_port):
     assert row["kind"] == "sim" and row["found"] is None
 
 
-def test_a_program_that_does_not_speak_the_protocol_is_no_tracker(prostm):
+def test_a_program_with_another_protocol_is_not_a_tracker(prostm):
     with socket.create_server(("127.0.0.1", 0)) as server:
 
         def answer():
@@ -60,7 +60,7 @@ def test_a_program_that_does_not_speak_the_protocol_is_no_tracker(prostm):
     assert row["found"] is False and "does not serve /v6.json" in row["words"]
 
 
-def test_a_program_that_accepts_and_says_nothing_is_given_up(prostm):
+def test_a_program_that_accepts_without_an_answer_times_out(prostm):
     with socket.create_server(("127.0.0.1", 0)) as server:
         start = time.monotonic()
         (row,) = rows_of(prostm, f"leap://127.0.0.1:{server.getsockname()[1]}", status=1)
@@ -73,11 +73,11 @@ def test_a_program_that_accepts_and_says_nothing_is_given_up(prostm):
     ("sim://127.0.0.1:80", ["sim", "no address"]),
     ("leap://127.0.0.1:many", ["port", "1 to 65535"]),
 ])
-def test_names_that_mean_nothing_are_refused_before_the_first_look(refuses, name, words):
+def test_unknown_names_are_rejected_before_any_search(refuses, name, words):
     refuses("devices", "leap://127.0.0.1:1", name, words=words)
 
 
-def test_the_system_row_of_a_limit_says_what_to_do(prostm):
+def test_the_system_row_of_a_limit_explains_what_to_do(prostm):
     for row in rows_of(prostm):
         if row["role"] == "system" and not row["available"]:
             assert "limits.d" in row["detail"] or "IPv6" in row["detail"]
@@ -91,8 +91,8 @@ def test_the_help_of_device_lists_names_and_addresses(prostm):
             assert form in text
 
 
-def test_a_device_brings_its_array_and_refuses_another(prostm, refuses):
-    """Kinds that imply an array are seen here once they are built."""
+def test_a_device_implies_its_array_and_rejects_another(prostm, refuses):
+    """Kinds that imply an array are only listed in builds that include them."""
     implied = [row for row in rows_of(prostm) if row["role"] == "array" and row["available"] and row["array"]]
     if not implied:
         pytest.skip("no device that is built implies an array")
@@ -101,7 +101,7 @@ def test_a_device_brings_its_array_and_refuses_another(prostm, refuses):
         refuses("run", "--device", row["kind"], "--array", other, words=["contradicts", row["array"]])
 
 
-def test_a_device_that_keeps_time_refuses_steps(prostm, refuses):
+def test_a_real_time_device_rejects_stepped_runs(prostm, refuses):
     clocked = [row for row in rows_of(prostm) if row["role"] == "array" and row["available"] and row["kind"] != "sim"]
     if not clocked:
         pytest.skip("no device but the simulated one is built")
@@ -110,7 +110,7 @@ def test_a_device_that_keeps_time_refuses_steps(prostm, refuses):
             refuses("run", "--device", row["kind"], mode, words=["keeps its own time", "--stepped"])
 
 
-def test_a_run_says_whether_its_memory_is_locked(prostm):
+def test_a_run_reports_whether_its_memory_is_locked(prostm):
     text = prostm("run", "--grid", "32", "--seconds", "0.2", "--lock-memory").stdout
     assert "All memory is locked" in text or "Memory may not be locked" in text
     assert "Real-time priority is" in text

@@ -1,4 +1,4 @@
-"""prostm levels: caps, levels and limits, and that caps can only be lowered."""
+"""prostm levels: caps, levels and limits. Caps can only be lowered."""
 
 import json
 
@@ -11,7 +11,7 @@ def levels(prostm, tmp_path, *arguments):
 
 
 @pytest.mark.parametrize("array", ["usx", "autd3"])
-def test_levels_are_intervals_beside_caps_and_limits(prostm, tmp_path, array):
+def test_levels_are_intervals_next_to_caps_and_limits(prostm, tmp_path, array):
     result = levels(prostm, tmp_path, "--array", array)
     assert result["format"] == "prostm-levels/1" and result["array"] == array
     for row in result["focus"]:
@@ -25,7 +25,7 @@ def test_levels_are_intervals_beside_caps_and_limits(prostm, tmp_path, array):
     assert all(limit["source"] for limit in result["limits"])
 
 
-def test_the_table_names_what_it_shows(prostm):
+def test_the_table_names_its_columns(prostm):
     out = prostm("levels").stdout
     for words in ("Caps ([safety]; lower ones can be set)", "mean_radiation_pressure", "200 mm", "0.5 m", "ACGIH",
                   "docs/devices/safety.md"):
@@ -41,7 +41,7 @@ def test_a_cap_can_be_lowered_and_never_raised(prostm, refuses, tmp_path):
         refuses("levels", "--settings", "high.toml", words=(key, "must be between"))
 
 
-def test_lowered_caps_weaken_a_run_and_say_so(prostm, tmp_path):
+def test_lowered_caps_weaken_a_run_and_are_reported(prostm, tmp_path):
     (tmp_path / "low.toml").write_text("[safety]\nmean_radiation_pressure = 50\n")
     run = ("run", "--stepped", "--grid", "32", "--seconds", "4", "--json", "run.json")
     prostm(*run)

@@ -1,4 +1,4 @@
-"""prostm selftest: it asks before it plays, plays gently, and keeps the answers."""
+"""prostm selftest: it asks before it plays, fades in, and stores the answers."""
 
 import json
 import os
@@ -12,7 +12,7 @@ import pytest
 
 
 class Asked:
-    """The program on a terminal of its own."""
+    """The program on its own terminal."""
 
     def __init__(self, program, folder, *arguments):
         self.terminal, theirs = pty.openpty()
@@ -51,7 +51,7 @@ def result_of(folder, name="test.json"):
     return json.loads((folder / name).read_text())
 
 
-def test_without_a_terminal_nothing_sounds_unless_told_so(refuses):
+def test_without_a_terminal_nothing_is_played_unless_requested(refuses):
     refuses("selftest", words=["no terminal", "--yes", "--silent"])
 
 
@@ -97,7 +97,7 @@ def test_each_unit_of_several_is_played_alone(prostm, tmp_path):
     assert [figure["name"] for figure in result["figures"][2:]] == ["a point over unit 1 of 2", "a point over unit 2 of 2"]
 
 
-def test_answers_are_kept(program, tmp_path):
+def test_answers_are_stored(program, tmp_path):
     asked = Asked(program, tmp_path, "--seconds", "0.3", "--json", "test.json")
     asked.expect("Play it? [Y/n/q]")
     asked.answer("")
@@ -114,7 +114,7 @@ def test_answers_are_kept(program, tmp_path):
     assert [figure["felt"] for figure in result["figures"]] == [True, False] and not result["passed"]
 
 
-def test_a_figure_can_be_left_out_silenced_and_the_test_be_ended(program, tmp_path):
+def test_a_figure_can_be_skipped_or_muted_and_the_test_ended(program, tmp_path):
     asked = Asked(program, tmp_path, "--seconds", "60", "--json", "test.json")
     asked.expect("Play it? [Y/n/q]")
     asked.answer("n")
@@ -122,7 +122,7 @@ def test_a_figure_can_be_left_out_silenced_and_the_test_be_ended(program, tmp_pa
     asked.answer("y")
     time.sleep(0.5)
     start = time.monotonic()
-    asked.answer("")  # silences
+    asked.answer("")  # mutes
     asked.expect("Can you feel it? [y/n]")
     assert time.monotonic() - start < 5
     asked.answer("y")
@@ -137,7 +137,7 @@ def test_a_figure_can_be_left_out_silenced_and_the_test_be_ended(program, tmp_pa
 
 
 @pytest.mark.parametrize("moment", ["question", "figure"])
-def test_ctrl_c_silences_and_keeps_the_result(program, tmp_path, moment):
+def test_ctrl_c_mutes_and_keeps_the_result(program, tmp_path, moment):
     asked = Asked(program, tmp_path, "--seconds", "60", "--json", "test.json")
     asked.expect("Play it? [Y/n/q]")
     if moment == "figure":

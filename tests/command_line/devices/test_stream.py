@@ -1,4 +1,4 @@
-"""prostm run --device stream://…: both receivers of examples/stream/, over TCP and UDP, as other programs run them."""
+"""prostm run --device stream://…: both receivers of examples/stream/, over TCP and UDP, in separate processes."""
 
 import importlib.util
 import json
@@ -13,8 +13,8 @@ import pytest
 
 from conftest import ROOT, wait_for
 
-STEP = 8.0 / 40e3  # of a focal point that sounds, at most, from sample to sample [m]
-CHANGE = 1.0 / 40.0  # of an intensity
+STEP = 8.0 / 40e3  # largest step of an active focal point between samples [m]
+CHANGE = 1.0 / 40.0  # largest change of an intensity between samples
 SILENT_AFTER = 0.025  # after the last message [s]: 20 ms without one, then a ramp of 5 ms
 
 RECEIVERS = [(language, over) for language in ("c++", "python") for over in ("tcp", "udp")]
@@ -41,7 +41,7 @@ def command(program, language):
 
 
 class Listener:
-    """A receiver that runs, and the files that it writes."""
+    """A running receiver, and the files that it writes."""
 
     def __init__(self, program, folder, language, over, port, *more):
         self.received, self.played = folder / f"{language}-{over}.received", folder / f"{language}-{over}.played"
@@ -50,7 +50,7 @@ class Listener:
              str(self.received), "--played", str(self.played), *more], stdout=subprocess.PIPE, text=True)
 
     def end(self):
-        """Returns its last statistics and all that it printed."""
+        """Stops the receiver; returns its last statistics and all its output."""
         self.process.send_signal(signal.SIGTERM)
         out, _ = self.process.communicate(timeout=60)
         assert self.process.returncode == 0
@@ -58,8 +58,8 @@ class Listener:
 
 
 def row_type(foci):
-    """A row of a receiver's files: index or time of handing over [ns], time [ns], focal points, factor, and x, y, z [m]
-    and the intensity of each focal point."""
+    """Type of a row of a receiver's files: index or time of delivery [ns], time [ns], focal points, factor, and x, y, z
+    [m] and the intensity of each focal point."""
     return np.dtype([("first", "<i8"), ("time", "<i8"), ("foci", "<i4"), ("gain", "<f4"), ("focus", "<f4", (foci, 4))])
 
 
@@ -87,7 +87,7 @@ def rows_of_bytes(data):
 
 
 def check_emission(rows):
-    """Whether consecutive samples may follow each other from the emitter of prostm."""
+    """Checks that consecutive samples may follow each other in prostm's emission."""
     follows = np.diff(rows["first"]) == 1
     intensity = rows["focus"][:, :, 3]
     assert (0.0 <= intensity).all() and (intensity <= 1.0).all()
@@ -98,7 +98,7 @@ def check_emission(rows):
 
 
 def check_ramps(rows):
-    """Whether the factor changes by 1 in 5 ms, and falls at once only where the receiver itself was not run."""
+    """Checks that the factor changes by 1 in 5 ms, and drops at once only if the receiver itself was not scheduled."""
     change, time_step = np.diff(rows["gain"]), np.diff(rows["time"])
     assert (change <= 0.0051).all()
     assert ((change >= -0.0051) | ((rows["gain"][1:] == 0.0) & (time_step > 5_000_000))).all()
@@ -106,7 +106,7 @@ def check_ramps(rows):
 
 @pytest.mark.realtime
 @pytest.mark.parametrize("language, over", RECEIVERS)
-def test_what_is_emitted_arrives(program, tmp_path, language, over):
+def test_the_emission_arrives(program, tmp_path, language, over):
     port = free_port()
     sender = start_sender(program, tmp_path, port, 3)
     listener = Listener(program, tmp_path, language, over, port)
@@ -126,11 +126,11 @@ def test_what_is_emitted_arrives(program, tmp_path, language, over):
     assert statistics["malformed"] == 0 and statistics["subscriptions"] >= 1
     assert "end: prostm ends." in printed
 
-    # the output is what came in, while nothing interrupts it, and silent at the end
+    # uninterrupted output equals the input; at the end there is silence
     played = rows_of(listener.played)
     assert len(played) > 40_000
     whole = played[played["gain"] == 1.0]
-    assert len(whole) > 1_000  # most of them, unless the machine is busy
+    assert len(whole) > 1_000  # most samples, unless the machine is busy
     came = {focus.tobytes() for focus in rows["focus"]}
     assert all(focus.tobytes() in came for focus in whole["focus"])
     check_ramps(played)
@@ -138,8 +138,8 @@ def test_what_is_emitted_arrives(program, tmp_path, language, over):
     print(f"{language} over {over}: {statistics}")
 
 
-def wait_until_it_sounds(listener):
-    """The hand is in the plume for most of the time; waits until it is felt."""
+def wait_for_output(listener):
+    """The hand is in the plume most of the time; waits until there is output."""
 
     def sounds():
         rows = newest_rows(listener.played)
@@ -150,7 +150,7 @@ def wait_until_it_sounds(listener):
 
 
 def silence_after(listener, begin, until):
-    """Time from `begin` to the last sounding sample before `until`, and to its handing over [s]; times in ns."""
+    """Time from `begin` to the last non-zero sample before `until`, and to its delivery [s]; times in ns."""
     rows = rows_of(listener.played)
     sounding = rows[(rows["focus"][:, :, 3].max(axis=1) > 0.0) & (rows["time"] < until)]
     return [(int(sounding[name].max()) - begin) / 1e9 for name in ("time", "first")]
@@ -158,25 +158,25 @@ def silence_after(listener, begin, until):
 
 def check_silence(words, silent, handed):
     print(f"{words} to the last sounding sample {1e3 * silent:.1f} ms, to its handing over {1e3 * handed:.1f} ms")
-    # a message may still have been on its way
+    # a message may still have been in transit
     assert silent <= SILENT_AFTER + 0.005
-    # a receiver that is not run in the middle of its ramp ends it up to 20 ms later
+    # a receiver that is not scheduled in the middle of its ramp finishes it up to 20 ms later
     assert handed <= SILENT_AFTER + 0.025
 
 
 @pytest.mark.realtime
 @pytest.mark.parametrize("language", ["c++", "python"])
-def test_falls_silent_while_prostm_stands_still(program, tmp_path, language):
+def test_falls_silent_while_prostm_is_suspended(program, tmp_path, language):
     port = free_port()
     sender = start_sender(program, tmp_path, port, 600)
     listener = Listener(program, tmp_path, language, "tcp", port, "--every", "4")
     try:
-        wait_until_it_sounds(listener)
+        wait_for_output(listener)
         begin = time.monotonic_ns()
         sender.send_signal(signal.SIGSTOP)  # the connection stays open
         time.sleep(0.5)
         sender.send_signal(signal.SIGCONT)
-        wait_until_it_sounds(listener)
+        wait_for_output(listener)
         listener.end()
     finally:
         sender.kill()
@@ -187,19 +187,19 @@ def test_falls_silent_while_prostm_stands_still(program, tmp_path, language):
 
 @pytest.mark.realtime
 @pytest.mark.parametrize("language, over", RECEIVERS)
-def test_falls_silent_after_kill_9_and_comes_back(program, tmp_path, language, over):
+def test_falls_silent_after_kill_9_and_resumes(program, tmp_path, language, over):
     port = free_port()
     sender = start_sender(program, tmp_path, port, 600)
     listener = Listener(program, tmp_path, language, over, port, "--every", "4")
     try:
-        wait_until_it_sounds(listener)
+        wait_for_output(listener)
         killed = time.monotonic_ns()
         sender.send_signal(signal.SIGKILL)
         sender.wait()
         time.sleep(0.5)
         again = start_sender(program, tmp_path, port, 600)
         try:
-            wait_until_it_sounds(listener)
+            wait_for_output(listener)
         finally:
             again.kill()
             again.communicate()
@@ -221,7 +221,7 @@ def python_receiver():
 
 
 def table_bytes(heading):
-    """The number of bytes that a table of docs/devices/stream.md lists, from its last row's place and type."""
+    """The number of bytes in a table of docs/devices/stream.md, from its last row's offset and type."""
     text = (ROOT / "docs" / "devices" / "stream.md").read_text(encoding="utf-8")
     table = text[text.index(heading):].split("\n\n")[0]
     last = [cell.strip() for cell in table.splitlines()[-1].strip("|").split("|")]
@@ -246,7 +246,7 @@ def test_the_document_and_the_receiver_agree_on_sizes(heading, layout):
     ("stream://nowhere.example:7140", ["must be a number"]),
     ("stream://127.0.0.1:0", ["1 to 65535"]),
 ])
-def test_bad_addresses_are_refused_in_a_sentence(refuses, address, words):
+def test_bad_addresses_are_rejected_in_a_sentence(refuses, address, words):
     if address == "stream://127.0.0.1":
         with socket.socket() as taken:
             taken.bind(("127.0.0.1", 0))
@@ -261,7 +261,7 @@ def test_devices_lists_the_stream(prostm):
     assert "40000 Hz" in [row["detail"] for row in rows if row["kind"] == "stream"][0]
 
 
-def test_the_receivers_say_what_is_wrong_with_an_option(program):
+def test_the_receivers_explain_a_wrong_option(program):
     for language in ("c++", "python"):
         result = subprocess.run([*command(program, language), "--every", "0"], capture_output=True, text=True,
                                 timeout=60)

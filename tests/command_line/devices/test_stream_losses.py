@@ -1,4 +1,4 @@
-"""The receiver in Python, fed with datagrams that are lost, doubled and out of order, by a clock of the test's own."""
+"""The receiver in Python with datagrams that are lost, duplicated and out of order, on a simulated clock."""
 
 import random
 import struct
@@ -12,11 +12,11 @@ from test_stream import python_receiver
 MS = 1_000_000  # ns
 RATE, PERIOD, LEAD = 40e3, 25_000, 20 * MS
 SPEED = 8.0  # of the focal points [m/s]
-BEGIN = 10**12  # of the stream [ns]
+BEGIN = 10**12  # start of the stream [ns]
 
 
 def place(sample, focus):
-    """x of a focal point on a line [m]: up and down, at SPEED."""
+    """x of a focal point on a line [m], up and down at SPEED."""
     phase = (SPEED * sample / RATE / 0.1 + focus / 8) % 2.0
     return 0.1 * (phase if phase < 1.0 else 2.0 - phase)
 
@@ -30,7 +30,7 @@ def datagram(first, count, foci):
 
 
 class Playback:
-    """A receiver and what it plays, in steps of a millisecond of its own time."""
+    """A receiver and its output, in steps of one millisecond of simulated time."""
 
     def __init__(self, foci):
         self.rows = []
@@ -56,7 +56,7 @@ class Playback:
 
 
 def arrivals_of(foci, lost, seed, seconds=1.0):
-    """Datagrams of a second as a network delivers them: without the lost ones, with doubles, out of order."""
+    """Datagrams of a second as delivered by a network: some lost, some duplicated, some out of order."""
     draw = random.Random(seed)
     count = 1152 // (16 * foci)
     out = []
@@ -87,13 +87,13 @@ def test_single_lost_datagrams_are_concealed(foci):
         full = rows[rows[:, 1] == 1.0]
         assert len(full) > 0.9 * RATE
         assert (np.diff(full[:, 0]) == PERIOD).all()
-        # no step is longer than that of the samples themselves, and no intensity changes
+        # no step exceeds that of the samples themselves, and no intensity changes
         assert (np.abs(np.diff(full[:, 2:2 + foci], axis=0)) <= SPEED / RATE + 1e-8).all()
         assert np.allclose(full[:, 2 + foci:], 0.5 + 0.001 * np.arange(foci), atol=1e-6)
 
 
 @pytest.mark.parametrize("foci", [1, 4])
-def test_two_lost_datagrams_in_a_row_are_silence(foci):
+def test_two_lost_datagrams_in_a_row_cause_silence(foci):
     arrivals, _ = arrivals_of(foci, {80, 81}, 1)
     playback = Playback(foci)
     playback.run(arrivals)
@@ -101,7 +101,7 @@ def test_two_lost_datagrams_in_a_row_are_silence(foci):
     assert playback.receiver.counts["concealed"] == 0
 
 
-def test_samples_that_break_the_protocol_are_silence():
+def test_samples_that_violate_the_protocol_cause_silence():
     arrivals, count = arrivals_of(4, {80}, 1)
     sent, body = datagram(80 * count, count, 4)
     playback = Playback(4)
@@ -110,7 +110,7 @@ def test_samples_that_break_the_protocol_are_silence():
     assert playback.receiver.counts["silences"] == 2 and playback.receiver.counts["concealed"] == 0
 
 
-def test_a_datagram_that_comes_after_its_time_is_concealed_and_dropped():
+def test_a_late_datagram_is_concealed_and_dropped():
     arrivals, count = arrivals_of(4, {80}, 1)
     sent, body = datagram(80 * count, count, 4)
     playback = Playback(4)

@@ -1,5 +1,5 @@
-"""The receivers of examples/stream/ against a sender that is written here from docs/devices/stream.md, and told to
-fail."""
+"""The receivers of examples/stream/ against a sender written here from docs/devices/stream.md, which fails on
+request."""
 
 import math
 import random
@@ -19,7 +19,7 @@ HELLO, BLOCK_KIND, STATE, HEARTBEAT, TIME, END, ERROR = 16, 17, 18, 19, 20, 23, 
 
 
 class Sender:
-    """Streams one focal point of intensity 1 that stands still, in real time, to one receiver over TCP."""
+    """Streams one focal point at rest with intensity 1, in real time, to one receiver over TCP."""
 
     def __init__(self):
         self.listening = socket.socket()
@@ -64,7 +64,7 @@ class Sender:
             pass
 
     def block(self, x=0.01, intensity=1.0):
-        """Sends the next block at its time."""
+        """Sends the next block when it is due."""
         due = self.begin + self.index * 25_000
         time.sleep(max(0, due - time.monotonic_ns()) / 1e9)
         body = struct.pack("<qqHHBBHq", self.index, due + LEAD, BLOCK, 1, 1, 0, 0, 0)
@@ -80,7 +80,7 @@ class Sender:
 
 
 def one_block_lost(sender):
-    """No more than a datagram holds: the receiver conceals it."""
+    """At most as much as a datagram holds: the receiver conceals it."""
     sender.leave_out()
 
 
@@ -109,12 +109,12 @@ def quiet(sender):
 
 
 def unknown(sender):
-    """A later version's message is no interruption."""
+    """A message of a later version is not an interruption."""
     sender.link.sendall(sender.message(99, b"later"))
 
 
 def times_jump(sender):
-    """Later by 130 ms, as when prostm was late."""
+    """Times later by 130 ms, as after a delay in prostm."""
     sender.begin += 130 * MS
 
 
@@ -136,7 +136,7 @@ def garbage(sender):
     sender.accept()
 
 
-def stream_until_it_sounds(sender, listener):
+def stream_until_output(sender, listener):
     begin = time.monotonic_ns()
 
     def sounds():
@@ -159,16 +159,16 @@ def stream_until_it_sounds(sender, listener):
 @pytest.mark.parametrize("language", ["c++", "python"])
 @pytest.mark.parametrize("fault", [unknown, one_block_lost, gap, not_a_number, too_loud, stopped, quiet, times_jump, ended, refused,
                                    garbage])
-def test_any_interruption_is_silence_and_then_sound_again(program, tmp_path, language, fault):
+def test_any_interruption_causes_silence_and_then_the_output_resumes(program, tmp_path, language, fault):
     silences = 0 if fault in (unknown, one_block_lost) else 1
     sender = Sender()
     listener = Listener(program, tmp_path, language, "tcp", sender.port, "--silence-ms", "100")
     try:
         sender.accept()
-        stream_until_it_sounds(sender, listener)
+        stream_until_output(sender, listener)
         fault(sender)
         sender.blocks(250)  # the fault has been played
-        stream_until_it_sounds(sender, listener)
+        stream_until_output(sender, listener)
         time.sleep(0.3)
         statistics, printed = listener.end()
     finally:
@@ -177,15 +177,15 @@ def test_any_interruption_is_silence_and_then_sound_again(program, tmp_path, lan
     played = rows_of(listener.played, foci=1)
     gain, focus = played["gain"], played["focus"][:, 0]
     assert np.isfinite(focus).all()
-    # the focal point stands still, so the intensity is the factor
+    # the focal point is at rest, so the intensity is the factor
     assert (0.0 <= focus[:, 3]).all() and (focus[:, 3] <= 1.0).all() and np.allclose(focus[:, 3], gain, atol=1e-6)
     falls, full = ((gain[:-1] > 0.0) & (gain[1:] == 0.0)).sum(), ((gain[:-1] < 1.0) & (gain[1:] == 1.0)).sum()
-    # more where the machine is so busy that the receiver or this sender are late; the last is the stream's end
+    # more if the machine is so busy that the receiver or this sender is late; the last is the end of the stream
     assert falls >= silences + 1 and statistics["silences"] >= silences + 1, printed
     assert full >= (2 if silences else 1)
     check_ramps(played)
     if fault is one_block_lost:
-        # unless the machine was so busy that the receiver was silent just then
+        # unless the machine was so busy that the receiver happened to be silent
         assert statistics["lost"] >= BLOCK and statistics["concealed"] + BLOCK * statistics["silences"] >= BLOCK
     if fault in (not_a_number, too_loud, garbage):
         assert statistics["malformed"] > 0

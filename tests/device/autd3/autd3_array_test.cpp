@@ -14,7 +14,7 @@ using test::sleep_s;
 using test::StandIn;
 using testing::HasSubstr;
 
-/// Words of the exception that construction throws; empty if it throws nothing.
+/// Message of the exception that construction throws; empty if it throws none.
 std::string refusal_of(const Autd3Setup& setup) {
   try {
     const Autd3Array array(setup);
@@ -29,7 +29,7 @@ void expect_no_fault(const nlohmann::json& report) {
   EXPECT_EQ(report["errors"], 0);
 }
 
-/// Largest distance of what sounded from what was given, sample by sample. [m]
+/// Largest distance between the positions played and those given, sample by sample. [m]
 double largest_error(const std::vector<test::PlayedSample>& log, const Circles& given, int foci,
                      int& compared) {
   double largest = 0.0;
@@ -41,7 +41,7 @@ double largest_error(const std::vector<test::PlayedSample>& log, const Circles& 
     }
     const Vec3 first = played.place(0);
     if (at < 0) {
-      // where in the stream the sound begins again
+      // finds the position in the stream at which the output resumes
       double best = 1.0;
       for (std::int64_t k = 0; k < given.samples(); ++k) {
         const double away = (given.place(0, k) - first).norm();
@@ -59,7 +59,7 @@ double largest_error(const std::vector<test::PlayedSample>& log, const Circles& 
   return largest;
 }
 
-TEST(Autd3Array, PlaysEverySampleWhereItBelongs) {
+TEST(Autd3Array, PlaysEverySampleAtItsPosition) {
   StandIn server({"--frames-per-ms", "2", "--log"});
   Autd3Array array(server.setup());
   EXPECT_LE(array.budget().frames_per_ms, 2.1);
@@ -76,7 +76,7 @@ TEST(Autd3Array, PlaysEverySampleWhereItBelongs) {
   EXPECT_EQ(report["sounds"], false);
   EXPECT_GE(report["largest_key"], 150);
   EXPECT_LE(report["largest_speed"], 8.0);
-  EXPECT_LE(report["phase_error"], 4.0);  // of the firmware's own tables
+  EXPECT_LE(report["phase_error"], 4.0);  // due to the firmware's own tables
   int compared = 0;
   EXPECT_LT(largest_error(server.log(), source, 4, compared), 0.05e-3);
   EXPECT_GT(compared, 500);
@@ -87,7 +87,7 @@ TEST(Autd3Array, PlaysEverySampleWhereItBelongs) {
               1e3 * report["longest_silence"].get<double>());
 }
 
-TEST(Autd3Array, TellsEachUnitWhereItIs) {
+TEST(Autd3Array, SendsEachUnitItsOwnPositions) {
   StandIn server;
   Autd3Setup setup = server.setup(2);
   setup.units = autd3_units_from_json(
@@ -112,7 +112,7 @@ TEST(Autd3Array, TellsEachUnitWhereItIs) {
   expect_no_fault(server.report());
 }
 
-TEST(Autd3Array, GivesEqualFocalPointsASlotEach) {
+TEST(Autd3Array, GivesEqualFocalPointsOneSlotEach) {
   StandIn server;
   Autd3Setup setup = server.setup(8);
   EXPECT_THAT(refusal_of(setup), HasSubstr("1 to 4 focal points"));
@@ -122,7 +122,7 @@ TEST(Autd3Array, GivesEqualFocalPointsASlotEach) {
   EXPECT_FALSE(array.info().intensity_per_focus);
 }
 
-TEST(Autd3Array, GoesOnAfterACut) {
+TEST(Autd3Array, ResumesAfterADisconnection) {
   StandIn server;
   Autd3Array array(server.setup());
   Circles source(4, array.info().sample_rate);
@@ -149,7 +149,7 @@ TEST(Autd3Array, GoesOnAfterACut) {
   expect_no_fault(server.report());
 }
 
-TEST(Autd3Array, GoesOnAfterAHalfOpenLink) {
+TEST(Autd3Array, ResumesAfterAHalfOpenConnection) {
   StandIn server;
   Autd3Array array(server.setup());
   Circles source(4, array.info().sample_rate);
@@ -170,7 +170,7 @@ TEST(Autd3Array, GoesOnAfterAHalfOpenLink) {
   array.stop();
 }
 
-TEST(Autd3Array, CountsBlocksOfASlowLinkAndNeverJumps) {
+TEST(Autd3Array, CountsMissedBlocksOfASlowLinkAndNeverJumps) {
   StandIn server({"--frames-per-ms", "4"});
   Autd3Array array(server.setup());
   Circles source(4, array.info().sample_rate);
@@ -189,7 +189,7 @@ TEST(Autd3Array, CountsBlocksOfASlowLinkAndNeverJumps) {
   EXPECT_LE(report["largest_speed"], 8.0);
 }
 
-TEST(Autd3Array, ExplainsEachRefusalAndGoesOn) {
+TEST(Autd3Array, ExplainsEachErrorAndContinues) {
   const std::array words = {"",        "v12.1",    "error 2",          "error 3", "error 4",
                             "error 5", "too late", "silencer's limit", "error 8"};
   StandIn server({"--frames-per-ms", "8"});
@@ -206,7 +206,7 @@ TEST(Autd3Array, ExplainsEachRefusalAndGoesOn) {
   }
 }
 
-TEST(Autd3Array, SaysWhyItCannotBegin) {
+TEST(Autd3Array, ReportsWhyItCannotStart) {
   Autd3Setup nowhere;
   nowhere.address = {"127.0.0.1", 1};
   EXPECT_THAT(refusal_of(nowhere), HasSubstr("nothing listens there; start AUTD3's simulator"));
@@ -216,7 +216,7 @@ TEST(Autd3Array, SaysWhyItCannotBegin) {
   EXPECT_THAT(refusal_of(slow.setup()), HasSubstr("too few for 8 slots at 2 kHz"));
 }
 
-TEST(Autd3Array, SaysThatAUnitIsHot) {
+TEST(Autd3Array, ReportsAHotUnit) {
   StandIn server;
   Autd3Array array(server.setup(1));
   Circles source(1, array.info().sample_rate);
@@ -227,7 +227,7 @@ TEST(Autd3Array, SaysThatAUnitIsHot) {
   EXPECT_TRUE(test::eventually([&] { return array.is_hot(); }));
 }
 
-TEST(Autd3Array, IsFoundWithoutATouch) {
+TEST(Autd3Array, IsDetectedWithoutBeingDisturbed) {
   StandIn server({"--frames-per-ms", "0"});
   const DeviceFinding found = look_for_autd3(server.setup());
   EXPECT_TRUE(found.found);

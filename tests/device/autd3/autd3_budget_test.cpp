@@ -11,7 +11,7 @@ namespace {
 TEST(Autd3Budget, HasTheNumbersOfTheProtocol) {
   struct Row {
     int slots, divider;
-    std::array<int, 3> frames;  // of blocks of 10, 20 and 40 ms
+    std::array<int, 3> frames;  // for blocks of 10, 20 and 40 ms
   };
   constexpr std::array kRows = {Row{8, 5, {9, 18, 36}}, Row{8, 6, {8, 15, 30}},
                                 Row{4, 2, {11, 22, 43}}, Row{4, 3, {8, 15, 29}}};
@@ -28,7 +28,7 @@ TEST(Autd3Budget, HasTheNumbersOfTheProtocol) {
   EXPECT_NEAR(autd3_budget(8, 6, 20e-3, 1.0).step(), 1.05e-3, 1e-9);
 }
 
-TEST(Autd3Budget, IsTheFastestThatIsWrittenInTime) {
+TEST(Autd3Budget, IsTheFastestThatCanBeWrittenInTime) {
   for (const double frames_per_ms : {0.5, 0.7, 1.0, 2.0, 5.0}) {
     for (const int slots : {1, 2, 4, 8}) {
       const Autd3Budget best = best_autd3_budget(slots, frames_per_ms);

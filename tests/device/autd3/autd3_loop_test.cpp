@@ -31,7 +31,7 @@ TEST(Autd3Loops, AreRepeatedAndReplaced) {
   Autd3Array array(server.setup());
   EXPECT_TRUE(array.info().loads_segments);
   const int length = static_cast<int>(array.info().sample_rate * 0.12 / 7.0);  // 120 mm at 7 m/s
-  /// Loads a loop while another sounds. @return how often it was silent meanwhile.
+  /// Loads a loop while another plays. @return the number of silences in the meantime.
   const auto silences_of = [&](const std::vector<FocusSample>& loop) {
     EXPECT_GT(server.wait_until_it(true), 0.0);
     const int before = server.report()["silences"];
@@ -41,7 +41,7 @@ TEST(Autd3Loops, AreRepeatedAndReplaced) {
     return server.report()["silences"].get<int>() - before;
   };
   ASSERT_EQ(array.load_segment(circle(length, 4, 0.019), 4), DeviceStatus::Running);
-  // as long, and near: it takes over at the same sample, without silence
+  // same length, and close by: the switch happens at the same sample, without silence
   double radius = 0.019;
   EXPECT_EQ(test::best_of(5, 0.5,
                           [&] {
@@ -50,7 +50,7 @@ TEST(Autd3Loops, AreRepeatedAndReplaced) {
                           }),
             0);
   EXPECT_LE(server.report()["largest_speed"], 8.0);
-  // far away, or of another length: after a moment of silence
+  // far away, or of another length: the switch needs a short silence
   EXPECT_GE(silences_of(circle(length, 4, 0.019, 2.0)), 1);
   EXPECT_GE(silences_of(circle(length + 7, 4, 0.019)), 1);
   const nlohmann::json report = server.report();
@@ -65,7 +65,7 @@ TEST(Autd3Loops, AreRepeatedAndReplaced) {
   EXPECT_EQ(server.report()["sounds"], false);
 }
 
-TEST(Autd3Loops, ComeBackAfterACut) {
+TEST(Autd3Loops, ResumeAfterADisconnection) {
   StandIn server({"--frames-per-ms", "4"});
   Autd3Array array(server.setup(2));
   ASSERT_EQ(array.load_segment(circle(150, 2, 0.019), 2), DeviceStatus::Running);
@@ -85,7 +85,7 @@ TEST(Autd3Loops, MayBeAsLongAsTheUnitsStore) {
   EXPECT_THAT(array.problem(), HasSubstr("AUTD3 holds 8192 of 8 slots"));
   ASSERT_EQ(array.load_segment(circle(8192, 4, 0.019), 4), DeviceStatus::Running);
   ASSERT_GT(server.wait_until_it(true), 0.0);
-  // the one that plays stays audible while the next is written
+  // the current loop keeps playing while the next one is written
   EXPECT_EQ(test::best_of(4, 0.5,
                           [&] {
                             const int before = server.report()["silences"];
@@ -99,7 +99,7 @@ TEST(Autd3Loops, MayBeAsLongAsTheUnitsStore) {
   EXPECT_EQ(report["problems"], 0) << report["first_problem"];
 }
 
-TEST(Autd3Loops, AreRefusedInOneSentence) {
+TEST(Autd3Loops, AreRejectedWithOneSentence) {
   StandIn server({"--frames-per-ms", "0"});
   Autd3Array array(server.setup(2));
   EXPECT_EQ(array.load_segment(circle(10, 3, 0.019), 3), DeviceStatus::Refused);
@@ -114,7 +114,7 @@ TEST(Autd3Loops, AreRefusedInOneSentence) {
   ASSERT_EQ(array.start(source), DeviceStatus::Running);
   EXPECT_EQ(array.load_segment(circle(10, 2, 0.019), 2), DeviceStatus::Refused);
   EXPECT_THAT(array.problem(), HasSubstr("plays a stream"));
-  // a still point is the shortest loop
+  // a point at rest is the shortest loop
   array.stop();
   EXPECT_EQ(array.load_segment(circle(1, 2, 0.019), 2), DeviceStatus::Running);
   EXPECT_GT(server.wait_until_it(true), 0.0);

@@ -10,7 +10,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-TEST(Autd3Reply, IsReadAsItComes) {
+TEST(Autd3Reply, IsReadPieceByPiece) {
   EXPECT_EQ(read_reply({}, Request::Send, 2).kind, Reply::Kind::Incomplete);
   EXPECT_EQ(read_reply(Bytes{0}, Request::Send, 2).kind, Reply::Kind::Accepted);
   const Reply part = read_reply(Bytes{0}, Request::Read, 2);
@@ -30,7 +30,7 @@ TEST(Autd3Reply, IsReadAsItComes) {
   EXPECT_EQ(read_reply(Bytes{0xFF, 0, 0, 0, 1}, Request::Hello, 1).kind, Reply::Kind::Strange);
 }
 
-TEST(Autd3Request, IsAsLongAsItsKindSays) {
+TEST(Autd3Request, LengthDependsOnItsKind) {
   EXPECT_EQ(request_bytes(Bytes{0x10}, 1), 14U);
   EXPECT_EQ(request_bytes(Bytes{1}, 1), 0U);
   EXPECT_EQ(request_bytes(Bytes{1, 3, 0, 0, 0}, 1), 5U + 3U * 28U);

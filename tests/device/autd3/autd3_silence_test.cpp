@@ -1,4 +1,4 @@
-// Silence after the death of the program, by each of two ways alone.
+// Silence after the program dies, by each of two independent mechanisms.
 #include <fcntl.h>
 
 #include "autd3_stand_in.hpp"
@@ -17,7 +17,7 @@ constexpr double kSilence = 0.100;  // [s] after the death
 
 enum class Plays { Stream, Loop };
 
-/// A program of its own that drives the units.
+/// A separate program that drives the units.
 class Driver {
  public:
   Driver(const Autd3Setup& setup, Plays plays) {
@@ -26,7 +26,7 @@ class Driver {
     process_ = ::fork();
     if (process_ == 0) {
       ::close(pipe[0]);
-      // a link that is too slow for a moment is tried again
+      // retries if the link was too slow for a moment
       for (int trial = 0; trial < 20; ++trial) {
         try {
           drive(setup, plays, pipe[1]);
@@ -66,7 +66,7 @@ class Driver {
   pid_t process_ = 0, link_ = 0;
 };
 
-/// Time from `death` until the units were silent for good [s].
+/// Time from `death` until the units are silent and stay so [s].
 double silent_after(StandIn& server, double death) {
   sleep_s(0.4);
   const nlohmann::json report = server.report();
@@ -74,7 +74,7 @@ double silent_after(StandIn& server, double death) {
   return report["last_sound"].get<double>() - death;
 }
 
-TEST(Autd3Silence, ComesWhenTheProgramIsKilled) {
+TEST(Autd3Silence, FollowsWhenTheProgramIsKilled) {
   for (const Plays plays : {Plays::Stream, Plays::Loop}) {
     StandIn server;
     Driver driver(server.setup(), plays);
@@ -90,7 +90,7 @@ TEST(Autd3Silence, ComesWhenTheProgramIsKilled) {
   }
 }
 
-TEST(Autd3Silence, ComesFromTheUnitsAloneWhenAllIsKilled) {
+TEST(Autd3Silence, FollowsFromTheUnitsAloneWhenAllIsKilled) {
   for (const Plays plays : {Plays::Stream, Plays::Loop}) {
     StandIn server;
     Driver driver(server.setup(), plays);
@@ -110,7 +110,7 @@ TEST(Autd3Silence, ComesFromTheUnitsAloneWhenAllIsKilled) {
   }
 }
 
-TEST(Autd3Silence, ComesFromTheLinkAloneWhenTheProgramIsKilled) {
+TEST(Autd3Silence, FollowsFromTheLinkAloneWhenTheProgramIsKilled) {
   const double silent = test::best_of(3, kSilence, [] {
     StandIn server;
     Driver driver(server.setup(), Plays::Stream);
@@ -125,7 +125,7 @@ TEST(Autd3Silence, ComesFromTheLinkAloneWhenTheProgramIsKilled) {
   std::printf("killed without modulation: last sound %.1f ms later\n", 1e3 * silent);
 }
 
-TEST(Autd3Silence, ComesWhenTheLinkIsKilledAndSoundComesBack) {
+TEST(Autd3Silence, FollowsWhenTheLinkIsKilledAndTheOutputResumes) {
   for (const int signal : {SIGKILL, SIGSTOP}) {
     StandIn server;
     Autd3Array array(server.setup());
@@ -151,23 +151,23 @@ TEST(Autd3Silence, ComesWhenTheLinkIsKilledAndSoundComesBack) {
   }
 }
 
-TEST(Autd3Silence, ComesInsteadOfAFrameThatIsTooLate) {
+TEST(Autd3Silence, ReplacesAFrameThatIsTooLate) {
   StandIn server;
   autd3::Session session(server.setup().address, {Pose::Identity()});
   const auto now = [] { return autd3::Session::Clock::now(); };
   ASSERT_TRUE(session.open(std::chrono::seconds(2)) && session.prepare(nullptr));
   autd3::nop(session.frame(0));
   ASSERT_TRUE(session.exchange_for_all(now() + std::chrono::seconds(1)));
-  // as if the link's process had been held up
+  // as if the link's process had stalled
   const std::int64_t frames = server.report()["frames"];
   EXPECT_FALSE(session.exchange_for_all(now() - std::chrono::microseconds(1)));
   EXPECT_NE(session.problem().find("is lost"), std::string::npos) << session.problem();
   const nlohmann::json report = server.report();
-  EXPECT_EQ(report["frames"], frames + 1) << "the one that clears";
+  EXPECT_EQ(report["frames"], frames + 1) << "one frame clears the units";
   EXPECT_EQ(report["goodbyes"], 1);
 }
 
-TEST(Autd3Silence, DoesNotComeFromSignalsToTheLink) {
+TEST(Autd3Silence, IsNotCausedBySignalsToTheLink) {
   StandIn server;
   Autd3Array array(server.setup(1));
   const pid_t link = array.link_process();
@@ -182,7 +182,7 @@ TEST(Autd3Silence, DoesNotComeFromSignalsToTheLink) {
   EXPECT_EQ(server.report()["connections"], 1);
 }
 
-TEST(Autd3Silence, ComesByARampWhenTheArrayStops) {
+TEST(Autd3Silence, IsReachedByARampWhenTheArrayStops) {
   StandIn server;
   Autd3Array array(server.setup());
   Circles source(4, array.info().sample_rate);
@@ -197,7 +197,7 @@ TEST(Autd3Silence, ComesByARampWhenTheArrayStops) {
   EXPECT_EQ(array.link_process(), 0);
   // no process is left behind
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), 0);
-  // and it plays again
+  // and the array plays again
   ASSERT_EQ(array.start(source), DeviceStatus::Running);
   EXPECT_GT(server.wait_until_it(true), 0.0);
 }

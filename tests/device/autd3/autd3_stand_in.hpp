@@ -1,5 +1,5 @@
 #pragma once
-/// Runs the stand-in for AUTD3 units, tests/support/standins/autd3, and gives it something to play.
+/// Runs the stand-in for AUTD3 units, tests/support/standins/autd3, and provides sources for it.
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -26,7 +26,7 @@
 
 namespace prostm::test {
 
-/// A sample that the stand-in's first unit played, as its log has it.
+/// A sample played by the stand-in's first unit, as stored in its log.
 struct PlayedSample {
   double time;
   std::int32_t index;
@@ -34,7 +34,7 @@ struct PlayedSample {
   std::int64_t divider;
   std::array<std::uint64_t, 8> words;
 
-  /// Position of a slot in D for a unit with its middle there [m].
+  /// Position of a slot in D for a unit centred there [m].
   Vec3 place(std::size_t slot) const {
     Vec3 p;
     for (int axis = 0; axis < 3; ++axis) {
@@ -97,14 +97,14 @@ class StandIn {
     std::remove(path.c_str());
     return samples;
   }
-  /// A setup for it.
+  /// A setup that connects to the stand-in.
   Autd3Setup setup(int foci = 4) const {
     Autd3Setup setup;
     setup.address = {"127.0.0.1", port_};
     setup.foci = foci;
     return setup;
   }
-  /// Waits until it sounds, or does not. @return the time when that was seen [s], 0 if never.
+  /// Waits until it plays, or is silent. @return time of the observation [s]; 0 if never.
   double wait_until_it(bool sounds, double patience = 30.0) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
     while (std::chrono::steady_clock::now() < end) {
@@ -137,7 +137,7 @@ inline void sleep_s(double seconds) {
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
 }
 
-/// The least of some trials: a busy machine may spoil one, but not all of them.
+/// The smallest result of several trials: a busy machine may spoil some, but not all.
 template <class Trial>
 double best_of(int trials, double enough, Trial&& trial) {
   double least = trial();
@@ -145,7 +145,7 @@ double best_of(int trials, double enough, Trial&& trial) {
   return least;
 }
 
-/// Stops an array before what it plays goes.
+/// Stops an array before its source is destroyed.
 class StopAtEnd {
  public:
   explicit StopAtEnd(Autd3Array& array) : array_(array) {}
@@ -157,8 +157,8 @@ class StopAtEnd {
   Autd3Array& array_;
 };
 
-/// Focal points on circles of 20 mm at 7 m/s, at the device's own rate, each with an intensity of
-/// its own.
+/// Focal points on circles of 20 mm at 7 m/s, at the device's own rate, each with its own
+/// intensity.
 class Circles final : public SampleSource {
  public:
   Circles(int foci, double rate) : foci_(foci), rate_(rate) {}
@@ -180,7 +180,7 @@ class Circles final : public SampleSource {
     allocations_ = guard_->allocations();
   }
   std::int64_t samples() const { return samples_; }
-  /// On the thread that asks, since it asked first.
+  /// Counted on the thread that calls fill() first.
   std::size_t allocations() const { return allocations_; }
 
  private:

@@ -1,4 +1,4 @@
-/// Devices that round places: steps of focal points stay within 8 m/s on them too.
+/// On devices that round positions, steps of focal points stay within 8 m/s, too.
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kSteps = 4000;
 
-/// A circle near the others, so that a focal point that is not too fast moves over to it and does
-/// not jump.
+/// A circle close to the others, so that a focal point that is slow enough moves over to it without
+/// a jump.
 LiftedPath circle(Random& random, double speed) {
   LiftedPath path;
   const Vec3 axis(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
@@ -34,8 +34,8 @@ LiftedPath circle(Random& random, double speed) {
   return path;
 }
 
-/// Returns the fastest step of what a device with rounded places plays [m/s].
-/// @param speed of the paths [m/s].  @param steps until the next plan.
+/// Returns the speed of the largest step that a device with rounded positions plays [m/s].
+/// @param speed of the paths [m/s].  @param steps between plans.
 double fastest(const DeviceInfo& info, double max_speed, double speed, int steps, Random& random) {
   EmitSettings settings;
   settings.foci = 1;
@@ -58,14 +58,14 @@ double fastest(const DeviceInfo& info, double max_speed, double speed, int steps
   return most;
 }
 
-TEST(PlaceUnit, RoundedStepsStayWithinTheLimitOfSpeed) {
+TEST(PlaceUnit, RoundedStepsStayWithinTheSpeedLimit) {
   Random random(3);
   for (const int decimation : {2, 4, 10}) {
     DeviceInfo info;
     info.sample_rate = 40e3 / decimation;
     info.decimation = decimation;
     info.place_unit = 0.025e-3;
-    // one path that is drawn too fast; then many that are moved over to
+    // one path at too high a speed, then many that the focal point moves over to
     for (const auto& [speed, steps] : {std::pair{12.0, kSteps}, std::pair{6.5, 100}}) {
       const double bounded = fastest(info, info.max_focus_speed(), speed, steps, random);
       EXPECT_LE(bounded, kMaxFocusSpeed) << decimation << ", " << speed;
@@ -76,7 +76,7 @@ TEST(PlaceUnit, RoundedStepsStayWithinTheLimitOfSpeed) {
   }
 }
 
-TEST(PlaceUnit, OtherDevicesMoveAtTheFullSpeed) {
+TEST(PlaceUnit, OtherDevicesUseTheFullSpeed) {
   EXPECT_EQ(DeviceInfo{}.max_focus_speed(), kMaxFocusSpeed);
 }
 

@@ -15,7 +15,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPeriod{20};
 
 TEST(TurnClock, FollowsTurnsThroughLateAnswers) {
-  for (const double drift : {-1e-4, 0.0, 1e-4}) {  // of the device's clock
+  for (const double drift : {-1e-4, 0.0, 1e-4}) {  // drift of the device's clock
     TurnClock clock;
     const TurnClock::Time begin{};
     clock.start(begin, 0, kPeriod);
@@ -24,7 +24,7 @@ TEST(TurnClock, FollowsTurnsThroughLateAnswers) {
     for (int i = 0; i < 20'000; ++i) {
       asked += static_cast<std::int64_t>(random.uniform(200.0, 900.0));
       const double turns = std::floor(static_cast<double>(asked) / (20e3 * (1.0 + drift)) + 0.3);
-      // the answer is on its way for a while
+      // the answer takes some time to arrive
       const auto seen = asked + static_cast<std::int64_t>(random.uniform(20.0, 300.0));
       clock.see(begin + microseconds(asked - 20), begin + microseconds(seen),
                 static_cast<int>(turns) % 2);
@@ -41,7 +41,7 @@ TEST(TurnClock, FollowsTurnsThroughLateAnswers) {
   }
 }
 
-TEST(TurnClock, CountsTurnsThatNoAnswerToldOf) {
+TEST(TurnClock, CountsTurnsThatNoAnswerReported) {
   TurnClock clock;
   const TurnClock::Time begin{};
   clock.start(begin, 0, kPeriod);

@@ -23,7 +23,7 @@ using test::sounds_again;
 using test::started;
 using testing::HasSubstr;
 
-/// A sample that a unit played, as the stand-in writes it.
+/// A sample that a unit played, as written by the stand-in.
 struct Played {
   std::int64_t unit, tick;
   std::uint32_t slots, muted;
@@ -41,7 +41,7 @@ struct Played {
   }
 };
 
-/// The stream's samples that a unit played, without the silent blocks around them.
+/// The samples of the stream that a unit played, without the silent blocks around them.
 std::vector<Played> played_by(test::SdkUnits& chain, std::int64_t unit) {
   const std::string file =
       (std::filesystem::temp_directory_path() / ("sdk_units_" + std::to_string(getpid()))).string();
@@ -61,7 +61,7 @@ Pose side_by_side(int unit, int units) {
   return Pose(Eigen::Translation3d(x, 0.0, 0.0)) * autd3_middle();
 }
 
-/// Sees that a unit played the source's samples, each once and in order.
+/// Checks that a unit played the source's samples, each once and in order.
 void expect_stream(const std::vector<Played>& played, const Moving& source, const Pose& X_DU,
                    std::size_t least) {
   ASSERT_GE(played.size(), least);
@@ -77,8 +77,8 @@ void expect_stream(const std::vector<Played>& played, const Moving& source, cons
   EXPECT_LT(worst, 0.05e-3);
 }
 
-/// Whether a unit was lost in between, so that what had been written to it was never played. Else
-/// units are cleared when they are found, at the start and at the end.
+/// Whether a unit was lost in between, so that data written to it were never played. Otherwise
+/// units are cleared only when they are found, at the start and at the end.
 bool was_lost(const nlohmann::json& report, int units) {
   return report["clears"].get<int>() > 3 * units;
 }
@@ -87,7 +87,7 @@ TEST(Autd3SdkBudget, FollowsFromFramesPerMillisecond) {
   const Autd3SdkBudget fast = best_autd3_sdk_budget(8, 20.0);
   EXPECT_EQ(fast.divider, 4);
   EXPECT_EQ(fast.block_samples, 100);
-  EXPECT_EQ(fast.block_frames, 7);  // 800 foci in frames of 179, a change of banks, a look
+  EXPECT_EQ(fast.block_frames, 7);  // 800 foci in frames of 179, a bank change, a status request
   EXPECT_DOUBLE_EQ(fast.block_time, 10e-3);
   EXPECT_DOUBLE_EQ(fast.load, 7.0 / 200.0);
   const Autd3SdkBudget slow = best_autd3_sdk_budget(8, 1.0);
@@ -96,7 +96,7 @@ TEST(Autd3SdkBudget, FollowsFromFramesPerMillisecond) {
   EXPECT_THROW(best_autd3_sdk_budget(8, 0.1), std::invalid_argument);
 }
 
-TEST(Autd3SdkArray, TellsItsCapabilitiesWithoutUnits) {
+TEST(Autd3SdkArray, ReportsItsCapabilitiesWithoutUnits) {
   const DeviceInfo info = Autd3SdkArray::info_of({.address = "%lo"});
   EXPECT_DOUBLE_EQ(info.sample_rate, 10e3);
   EXPECT_EQ(info.decimation, 4);
@@ -128,11 +128,11 @@ TEST(Autd3SdkArray, StreamsEverySampleOnceAndInOrder) {
   }
 }
 
-TEST(Autd3SdkArray, TellsEachUnitItsOwnPlaces) {
+TEST(Autd3SdkArray, SendsEachUnitItsOwnPositions) {
   test::SdkUnits chain({"--units", "2", "--record"});
   const Pose turned =
       Pose(Eigen::Translation3d(0.25, 0.1, 0.05) * Eigen::AngleAxisd(-0.6, Vec3::UnitY()));
-  Moving source(8);  // which share an intensity
+  Moving source(8);  // foci that share one intensity
   const auto array = opened({.address = chain.address(),
                              .units = {autd3_middle(), turned},
                              .foci = 8,
@@ -149,7 +149,7 @@ TEST(Autd3SdkArray, TellsEachUnitItsOwnPlaces) {
   expect_stream(played_by(chain, 1), source, turned, 2'000);
 }
 
-TEST(Autd3SdkArray, SpeaksToFirmwareThatWantsAMargin) {
+TEST(Autd3SdkArray, WorksWithFirmwareThatNeedsAMargin) {
   test::SdkUnits chain({"--activate-bytes", "14", "--record"});
   Moving source(4);
   const auto array = opened({.address = chain.address()});
@@ -163,7 +163,7 @@ TEST(Autd3SdkArray, SpeaksToFirmwareThatWantsAMargin) {
     expect_stream(played_by(chain, 0), source, side_by_side(0, 1), 1'000);
 }
 
-TEST(Autd3SdkArray, SurvivesLossDelayAndDisorder) {
+TEST(Autd3SdkArray, SurvivesLossDelayAndReordering) {
   for (const char* fault : {"drop 2", "reorder 10", "delay 1500"}) {
     test::SdkUnits chain({"--units", "2", "--record"});
     Moving source(4);
@@ -190,7 +190,7 @@ TEST(Autd3SdkArray, SurvivesLossDelayAndDisorder) {
   }
 }
 
-TEST(Autd3SdkArray, FallsSilentWhenItStops) {
+TEST(Autd3SdkArray, IsSilentAfterStop) {
   test::SdkUnits chain;
   Moving source(4);
   const auto array = opened({.address = chain.address()});
@@ -204,13 +204,13 @@ TEST(Autd3SdkArray, FallsSilentWhenItStops) {
     EXPECT_EQ(array->status(), DeviceStatus::Idle);
     sleep(50);
     EXPECT_LT(chain.report()["last_sounding_ns"].get<std::int64_t>(), stopped);
-    EXPECT_EQ(chain.report()["trips"], i);  // those of an idle unit, before the start
-    sleep(700);                             // until the failsafe of an idle unit
+    EXPECT_EQ(chain.report()["trips"], i);  // trips of an idle unit's failsafe, before the start
+    sleep(700);                             // until the failsafe of an idle unit trips
   }
   EXPECT_EQ(chain.report()["protocol_errors"], 0);
 }
 
-TEST(Autd3SdkArray, RefusesWhatDoesNotFit) {
+TEST(Autd3SdkArray, RejectsInvalidSetups) {
   EXPECT_THROW(Autd3SdkArray({.address = "%no-such-card"}), std::invalid_argument);
   test::SdkUnits chain;
   EXPECT_THROW(Autd3SdkArray({.address = chain.address(), .foci = 5}), std::invalid_argument);
@@ -223,7 +223,7 @@ TEST(Autd3SdkArray, RefusesWhatDoesNotFit) {
   EXPECT_EQ(array->load_segment({}, 1), DeviceStatus::Refused);
 }
 
-/// A circle of one focal point, n samples a lap.
+/// A circle of one focal point, n samples per lap.
 std::vector<FocusSample> circle(int n, double radius) {
   std::vector<FocusSample> samples;
   for (int i = 0; i < n; ++i) {
@@ -250,7 +250,7 @@ TEST(Autd3SdkArray, RepeatsSegmentsInWholeLaps) {
   const auto report = chain.report();
   EXPECT_EQ(report["protocol_errors"], 0) << report;
   if (was_lost(report, 1)) return;
-  // every lap begins when the one before it has ended
+  // every lap begins where the one before ends
   std::size_t at = 0, laps = 0;
   const std::vector<FocusSample>* loop = &small;
   for (const Played& p : played_by(chain, 0)) {

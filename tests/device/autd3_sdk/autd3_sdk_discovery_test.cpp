@@ -25,7 +25,7 @@ std::string refusal_of(const std::string& address) {
   return {};
 }
 
-TEST(SdkAddress, TakesAnInterfaceOrAnAddress) {
+TEST(SdkAddress, AcceptsAnInterfaceOrAnAddress) {
   const UdpAddress simulator = group_address("[::1]:50000");
   EXPECT_EQ(simulator.port, 50000);
   EXPECT_EQ(simulator.host[15], 1);
@@ -38,7 +38,7 @@ TEST(SdkAddress, TakesAnInterfaceOrAnAddress) {
   EXPECT_EQ(group_address("%lo:7").port, 7);
 }
 
-TEST(SdkAddress, RefusesOthersWithASentence) {
+TEST(SdkAddress, RejectsOthersWithASentence) {
   EXPECT_THAT(refusal_of("%no-such-card"), HasSubstr("there is no network interface"));
   EXPECT_THAT(refusal_of("eth0"), HasSubstr("%eth0"));
   EXPECT_THAT(refusal_of("127.0.0.1"), HasSubstr("IPv6 address in brackets"));
@@ -55,12 +55,12 @@ TEST(SdkDiscovery, NumbersUnitsAlongTheirChain) {
     ASSERT_TRUE(test::eventually([&] { return session.open(); })) << session.problem();
     EXPECT_EQ(session.units(), static_cast<std::size_t>(count));
     EXPECT_EQ(session.firmware(), "CPU 0.10.0, FPGA 0.10.0");
-    // again, with all units numbered from before
+    // again, now that all units have numbers
     ASSERT_TRUE(test::eventually([&] { return session.open(); })) << session.problem();
     session.close();
     const auto report = chain.report();
     EXPECT_EQ(report["protocol_errors"], 0) << report;
-    EXPECT_GE(report["clears"], 3 * count);  // found twice, closed
+    EXPECT_GE(report["clears"], 3 * count);  // found twice, then closed
   }
 }
 
@@ -75,7 +75,7 @@ TEST(SdkDiscovery, FindsUnitsThroughLoss) {
   EXPECT_EQ(chain.report()["protocol_errors"], 0);
 }
 
-TEST(SdkDiscovery, WaitsUntilAllUnitsKeepTheTime) {
+TEST(SdkDiscovery, WaitsUntilAllUnitsAreSynchronised) {
   test::SdkUnits chain({"--units", "2"});
   chain.tell("never-ready 1");
   std::jthread later([&] {
@@ -88,7 +88,7 @@ TEST(SdkDiscovery, WaitsUntilAllUnitsKeepTheTime) {
   EXPECT_GT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(600));
 }
 
-TEST(SdkDiscovery, SaysWhyAUnitDoesNotTakeItsNumber) {
+TEST(SdkDiscovery, ReportsWhyAUnitRejectsItsNumber) {
   for (int status = 1; status <= 4; ++status) {
     test::SdkUnits chain;
     chain.tell("status 4 " + std::to_string(status));
@@ -99,22 +99,22 @@ TEST(SdkDiscovery, SaysWhyAUnitDoesNotTakeItsNumber) {
   }
 }
 
-TEST(SdkDiscovery, SaysThatNobodyAnswers) {
+TEST(SdkDiscovery, ReportsThatNoUnitAnswers) {
   int port = 0;
-  { port = test::SdkUnits().port(); }  // that is free now
+  { port = test::SdkUnits().port(); }  // a port that is free now
   Session session({.address = "[::1]:" + std::to_string(port)});
   EXPECT_FALSE(session.open());
   EXPECT_THAT(session.problem(), HasSubstr("does not answer; start the AUTD3 SDK's simulator"));
 }
 
-TEST(SdkDiscovery, SaysThatThereAreMoreUnitsThanPoses) {
+TEST(SdkDiscovery, ReportsMoreUnitsThanPoses) {
   test::SdkUnits chain({"--units", "2"});
   Session session({.address = chain.address(), .units = 1});
   EXPECT_FALSE(session.open());
   EXPECT_THAT(session.problem(), HasSubstr("has 2 units, but the settings place 1"));
 }
 
-TEST(SdkSession, ExplainsEachRefusal) {
+TEST(SdkSession, ExplainsEachError) {
   test::SdkUnits chain;
   Session session({.address = chain.address()});
   ASSERT_TRUE(test::eventually([&] { return session.open(); })) << session.problem();
@@ -127,7 +127,7 @@ TEST(SdkSession, ExplainsEachRefusal) {
   }
 }
 
-TEST(SdkSession, LosesAUnitThatIsSilentFor100Milliseconds) {
+TEST(SdkSession, DropsAUnitThatIsSilentFor100Milliseconds) {
   test::SdkUnits chain;
   Session session({.address = chain.address()});
   ASSERT_TRUE(test::eventually([&] { return session.open(); })) << session.problem();
@@ -141,7 +141,7 @@ TEST(SdkSession, LosesAUnitThatIsSilentFor100Milliseconds) {
   EXPECT_TRUE(test::eventually([&] { return session.resume(); })) << session.problem();
 }
 
-TEST(SdkSession, KnowsTheUnitsTime) {
+TEST(SdkSession, FollowsTheUnitsClock) {
   test::SdkUnits chain;
   Session session({.address = chain.address()});
   Session::Clock::time_point now;
@@ -153,13 +153,13 @@ TEST(SdkSession, KnowsTheUnitsTime) {
     EXPECT_EQ(session.host_time(first), now);
     return session.listen(now + std::chrono::milliseconds(600));
   })) << session.problem();
-  // the unit's clock was set to 0 when it was found
+  // the unit's clock was set to 0 at discovery
   EXPECT_GT(first, 0);
   EXPECT_LT(first, 5'000'000'000);
   EXPECT_NEAR(static_cast<double>(session.unit_time(now) - first), 0.0, 20e6);
 }
 
-TEST(SdkLook, SaysWhoAnswersAndDisturbsNobody) {
+TEST(SdkLook, ListsTheUnitsWithoutDisturbingThem) {
   test::SdkUnits chain;
   DeviceSetup setup;
   setup.address = chain.address();
@@ -176,7 +176,7 @@ TEST(SdkLook, SaysWhoAnswersAndDisturbsNobody) {
   EXPECT_EQ(chain.report()["protocol_errors"], 0);
 }
 
-TEST(SdkLook, SaysWhatIsMissing) {
+TEST(SdkLook, ReportsWhatIsMissing) {
   DeviceSetup setup;
   EXPECT_THAT(autd3_sdk_kind().look(setup).words, HasSubstr("name the network interface"));
   setup.address = "%no-such-card";
@@ -184,7 +184,7 @@ TEST(SdkLook, SaysWhatIsMissing) {
   { setup.address = test::SdkUnits().address(); }
   const DeviceFinding nobody = autd3_sdk_kind().look(setup);
   EXPECT_FALSE(nobody.found);
-  EXPECT_THAT(nobody.words, HasSubstr("nobody answers"));
+  EXPECT_THAT(nobody.words, HasSubstr("no unit answers"));
   EXPECT_THAT(nobody_words(group_address("%lo")),
               testing::AllOf(HasSubstr("firewall"), HasSubstr("fe80::/10"),
                              HasSubstr("MLD snooping"), HasSubstr("44336")));

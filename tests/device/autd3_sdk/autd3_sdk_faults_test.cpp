@@ -20,7 +20,7 @@ using test::sounds_again;
 using test::started;
 using testing::HasSubstr;
 
-TEST(Autd3SdkFaults, SoundsAgainAfterACut) {
+TEST(Autd3SdkFaults, ResumesAfterADisconnection) {
   test::SdkUnits chain;
   Moving source(4);
   const auto array = opened({.address = chain.address()});
@@ -44,7 +44,7 @@ TEST(Autd3SdkFaults, SoundsAgainAfterACut) {
   EXPECT_LE(chain.report()["largest_speed_m_s"], 8.0);
 }
 
-TEST(Autd3SdkFaults, NumbersUnitsAgainThatLostTheirPower) {
+TEST(Autd3SdkFaults, RenumbersUnitsAfterAPowerLoss) {
   test::SdkUnits chain({"--units", "2"});
   Moving source(4);
   const auto array = opened({.address = chain.address()});
@@ -66,7 +66,7 @@ TEST(Autd3SdkFaults, NumbersUnitsAgainThatLostTheirPower) {
   EXPECT_EQ(chain.report()["protocol_errors"], 0) << chain.report();
 }
 
-TEST(Autd3SdkFaults, IsReleasedFromTheFailsafe) {
+TEST(Autd3SdkFaults, ReleasesUnitsFromTheFailsafe) {
   test::SdkUnits chain({"--units", "2"});
   Moving source(4);
   const auto array = opened({.address = chain.address()});
@@ -75,7 +75,7 @@ TEST(Autd3SdkFaults, IsReleasedFromTheFailsafe) {
   ASSERT_TRUE(sounds_again(chain, 0.0));
   chain.tell("hold-latch 1");
   chain.tell("latch");
-  // or it is lost, where the machine is too busy
+  // or the unit is lost if the machine is too busy
   bool lost = false;
   ASSERT_TRUE(test::eventually([&] {
     lost = array->status() == DeviceStatus::Vanished;
@@ -92,7 +92,7 @@ TEST(Autd3SdkFaults, IsReleasedFromTheFailsafe) {
   EXPECT_TRUE(lost || array->muted() >= 1);
 }
 
-/// Keeps the device's thread for a while, once.
+/// Blocks the device's thread for a while, once.
 class Stalling final : public SampleSource {
  public:
   explicit Stalling(SampleSource& from) : from_(from) {}
@@ -108,7 +108,7 @@ class Stalling final : public SampleSource {
   std::atomic<int> stall_{0};
 };
 
-TEST(Autd3SdkFaults, GoesOnAfterAStall) {
+TEST(Autd3SdkFaults, ResumesAfterAStall) {
   test::SdkUnits chain({"--units", "2", "--record"});
   Moving source(4);
   Stalling stalling(source);
@@ -130,7 +130,7 @@ TEST(Autd3SdkFaults, GoesOnAfterAStall) {
   EXPECT_LE(report["largest_speed_m_s"], 8.0);
 }
 
-TEST(Autd3SdkFaults, SaysThatAUnitIsHot) {
+TEST(Autd3SdkFaults, ReportsAHotUnit) {
   test::SdkUnits chain({"--units", "2"});
   Moving source(4);
   const auto array = opened({.address = chain.address()});
@@ -143,7 +143,7 @@ TEST(Autd3SdkFaults, SaysThatAUnitIsHot) {
   EXPECT_TRUE(test::eventually([&] { return !array->is_hot(); }));
 }
 
-TEST(Autd3SdkFaults, UnitsFallSilentByThemselvesWhenItsProcessIsKilled) {
+TEST(Autd3SdkFaults, UnitsFallSilentByThemselvesWhenTheProcessIsKilled) {
   test::SdkUnits chain({"--units", "2"});
   double longest = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -151,7 +151,7 @@ TEST(Autd3SdkFaults, UnitsFallSilentByThemselvesWhenItsProcessIsKilled) {
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
-      // the child ends here, whatever happens
+      // the child process ends here in any case
       try {
         Moving source(4);
         const auto array = opened({.address = chain.address()});
@@ -178,7 +178,7 @@ TEST(Autd3SdkFaults, UnitsFallSilentByThemselvesWhenItsProcessIsKilled) {
   EXPECT_LE(longest, 110.0);
 }
 
-TEST(Autd3SdkFaults, VanishesWithASentenceWhenAUnitRefuses) {
+TEST(Autd3SdkFaults, VanishesWithASentenceWhenAUnitReportsAnError) {
   test::SdkUnits chain;
   Moving source(4);
   const auto array = opened({.address = chain.address()});

@@ -1,5 +1,5 @@
 #pragma once
-/// A stream for trials of the AUTD3 SDK's device, and what is asked of the stand-in.
+/// Helpers for tests of the AUTD3 SDK's device: a source, and start-up with the stand-in.
 
 #include <atomic>
 #include <chrono>
@@ -57,7 +57,7 @@ class Moving final : public SampleSource {
   std::atomic<std::int64_t> filled_{0};
 };
 
-/// Opens an array, again if the machine was too busy for the stand-in to answer in time.
+/// Opens an array; retries if the machine was too busy for the stand-in to answer in time.
 inline std::unique_ptr<Autd3SdkArray> opened(const Autd3SdkSetup& setup) {
   for (int tries = 1;; ++tries) {
     try {
@@ -68,14 +68,14 @@ inline std::unique_ptr<Autd3SdkArray> opened(const Autd3SdkSetup& setup) {
   }
 }
 
-/// Starts it, likewise.
+/// Starts the array, likewise.
 inline DeviceStatus started(Device& array, SampleSource& source) {
   DeviceStatus status = array.start(source);
   for (int i = 0; i < 10 && status != DeviceStatus::Running; ++i) status = array.start(source);
   return status;
 }
 
-/// Time of the last sample that sounded, of the steady clock [s].
+/// Time of the last non-silent sample [s, steady clock].
 inline double sounding(SdkUnits& chain) {
   return chain.report()["last_sounding_ns"].get<double>() * 1e-9;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// The stand-in for a chain of AUTD3 units, as a program of its own.
+/// The stand-in for a chain of AUTD3 units, in a separate process.
 
 #include <sys/types.h>
 
@@ -9,7 +9,7 @@
 
 namespace prostm::test {
 
-/// Starts the program on a free port of ::1 and ends it.
+/// Starts the program on a free port of ::1, and stops it on destruction.
 class SdkUnits {
  public:
   explicit SdkUnits(const std::vector<std::string>& options = {});
@@ -17,10 +17,10 @@ class SdkUnits {
   SdkUnits(const SdkUnits&) = delete;
   SdkUnits& operator=(const SdkUnits&) = delete;
 
-  /// Its address, behind autd3-sdk://.
+  /// Its address without autd3-sdk://.
   std::string address() const { return "[::1]:" + std::to_string(port_); }
   int port() const { return port_; }
-  /// Types a line and returns the answer.
+  /// Sends a command line and returns the answer.
   nlohmann::json tell(const std::string& line);
   nlohmann::json report() { return tell("report"); }
 

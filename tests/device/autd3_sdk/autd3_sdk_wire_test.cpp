@@ -18,7 +18,7 @@ std::vector<std::uint8_t> bytes_of(const Datagram& d) {
   return {d.bytes().begin(), d.bytes().end()};
 }
 
-TEST(SdkWire, WritesHeadersOfEightKinds) {
+TEST(SdkWire, WritesTheHeadersOfMessages) {
   Datagram d;
   begin(d, Kind::Discover, 0x1234);
   EXPECT_THAT(bytes_of(d), ElementsAre(2, 3, 0x34, 0x12));
@@ -57,7 +57,7 @@ TEST(SdkWire, FillsADatagramWithFoci) {
   EXPECT_LE(d.bytes().size(), kMostDatagram);
 }
 
-TEST(SdkWire, ConfiguresPatterns) {
+TEST(SdkWire, WritesPatternSettings) {
   Datagram d;
   config_pattern(d,
                  {.bank = 1, .divider = 4, .samples = 0x10203, .slots = 8, .sound_speed = 346.0});
@@ -135,7 +135,7 @@ TEST(SdkWire, ReadsAcknowledgements) {
   EXPECT_FALSE(read_unit_info(*reply));
 }
 
-TEST(SdkWire, RefusesWhatIsTooShortOrOfAnotherVersion) {
+TEST(SdkWire, RejectsMessagesThatAreTooShortOrOfAnotherVersion) {
   std::vector<std::uint8_t> bytes = {2, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   ASSERT_TRUE(read_frame_reply(*read_reply(bytes)));
   for (std::size_t size = 0; size < bytes.size(); ++size) {
@@ -147,7 +147,7 @@ TEST(SdkWire, RefusesWhatIsTooShortOrOfAnotherVersion) {
   EXPECT_EQ(version_of(bytes), 1);
   bytes = {2, 8, 0, 0, 0};
   EXPECT_FALSE(read_reply(bytes));
-  EXPECT_FALSE(read_reply(std::array<std::uint8_t, 4>{2, 3, 0, 0}));  // no status
+  EXPECT_FALSE(read_reply(std::array<std::uint8_t, 4>{2, 3, 0, 0}));  // the status is missing
 }
 
 TEST(SdkWire, SurvivesRandomBytes) {
@@ -168,13 +168,13 @@ TEST(SdkWire, SurvivesRandomBytes) {
   }
 }
 
-TEST(SdkWire, ExplainsEachErrorInWordsOfItsOwn) {
+TEST(SdkWire, HasADistinctSentenceForEachError) {
   std::set<std::string> seen;
   for (int error = 1; error <= 0x15; ++error) {
-    if (error == 3) continue;  // not of the table
+    if (error == 3) continue;  // not in the table
     const std::string words = error_words(static_cast<std::uint8_t>(error));
     EXPECT_THAT(words, testing::Not(HasSubstr("does not know; its firmware is newer"))) << error;
-    if (error == 0x0D || error == 0x0E) continue;  // as 0x0A
+    if (error == 0x0D || error == 0x0E) continue;  // same as 0x0A
     EXPECT_TRUE(seen.insert(words).second) << error;
   }
   EXPECT_THAT(error_words(0x40), HasSubstr("error 64"));

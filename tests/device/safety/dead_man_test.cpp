@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRamp = 1.5e-3, kSample = 0.25e-3;
 
-TEST(DeadMan, EndsSilentAndInTime) {
+TEST(DeadMan, FadesToSilenceInTime) {
   Random random(1);
   for (int i = 0; i < 100'000; ++i) {
     SoundingTime time;

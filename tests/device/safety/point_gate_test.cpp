@@ -18,7 +18,7 @@ FocusSample focus(double x, double intensity) {
   return {Eigen::Vector3f(static_cast<float>(x), 0.0F, 0.2F), static_cast<float>(intensity)};
 }
 
-TEST(PointGate, LetsPointsThatAreFarEnoughPassLater) {
+TEST(PointGate, DelaysPointsThatAreFarEnoughApart) {
   PointGate gate;
   gate.configure(2, kBounds);
   EXPECT_EQ(gate.delay(), kFade);
@@ -33,7 +33,7 @@ TEST(PointGate, LetsPointsThatAreFarEnoughPassLater) {
   EXPECT_EQ(gate.weakened(), 0);
 }
 
-TEST(PointGate, SilencesAPointAroundASampleThatIsNotFinite) {
+TEST(PointGate, MutesAPointAroundASampleThatIsNotFinite) {
   PointGate gate;
   gate.configure(1, kBounds);
   std::vector<FocusSample> out(1);
@@ -46,7 +46,7 @@ TEST(PointGate, SilencesAPointAroundASampleThatIsNotFinite) {
   }
 }
 
-TEST(PointGate, LetsPointsMeetWhereTheDeviceHasNoBound) {
+TEST(PointGate, LetsPointsMeetIfTheDeviceHasNoBound) {
   PointGate gate;
   gate.configure(2, {.least_separation = 0.0, .fade = kFade});
   std::vector<FocusSample> out(2);
@@ -55,23 +55,23 @@ TEST(PointGate, LetsPointsMeetWhereTheDeviceHasNoBound) {
   EXPECT_EQ(gate.weakened(), 0);
 }
 
-TEST(PointGate, FadesTheWeakerOutBeforeTheyMeetAndInAfter) {
+TEST(PointGate, FadesTheWeakerOutBeforeTheyMeetAndInAfterwards) {
   PointGate gate;
   gate.configure(2, kBounds);
   std::vector<FocusSample> out(2);
-  // passes by at 0.4 mm a sample: too close for |x| < 10 mm
+  // passes at 0.4 mm per sample: too close for |x| < 10 mm
   for (int i = 0; i < 300; ++i) {
     gate.step(std::vector{focus(0.0, 1.0), focus(4e-4 * (i - 150), 0.5)}, out);
     if (i < kFade) continue;
-    ASSERT_EQ(out[0].intensity, 1.0F) << "the stronger goes on";
+    ASSERT_EQ(out[0].intensity, 1.0F) << "the stronger is unchanged";
     const int sample = i - kFade - 150;  // samples from the middle
     const double gain = static_cast<double>(out[1].intensity) / 0.5;
-    const int outside = std::abs(sample) - 24;  // samples from the nearest one that is too close
+    const int outside = std::abs(sample) - 24;  // samples to the nearest one that is too close
     ASSERT_NEAR(gain, std::min(1.0, std::max(0, outside) / double(kFade)), 1e-6) << sample;
   }
 }
 
-TEST(PointGate, DoesNotLetEqualsTakeTurns) {
+TEST(PointGate, DoesNotAlternateBetweenEqualPoints) {
   PointGate gate;
   gate.configure(2, kBounds);
   std::vector<FocusSample> out(2);
@@ -88,7 +88,7 @@ TEST(PointGate, DoesNotLetEqualsTakeTurns) {
   EXPECT_EQ(turns, 0);
 }
 
-TEST(PointGate, HandsOverToOneThatBecomesMuchStronger) {
+TEST(PointGate, SwitchesToAPointThatBecomesMuchStronger) {
   PointGate gate;
   gate.configure(2, kBounds);
   std::vector<FocusSample> out(2);
@@ -100,7 +100,7 @@ TEST(PointGate, HandsOverToOneThatBecomesMuchStronger) {
   EXPECT_EQ(out[1].intensity, 1.0F);
 }
 
-/// Points that move and change as fast as an emission may, at random, in a small space.
+/// Points in a small space that move and change at random, as fast as an emission may.
 class RandomPoints {
  public:
   RandomPoints(unsigned seed, int foci, double rate)
@@ -118,7 +118,7 @@ class RandomPoints {
       if (unit_(random_) > 0.998) point.intensity = std::nanf("");
     }
     given_ = points_;
-    // goes on from what was meant
+    // continues from the valid value
     for (FocusSample& point : points_) {
       if (!std::isfinite(point.intensity)) point.intensity = 0.0F;
     }
@@ -157,8 +157,8 @@ TEST(PointGate, KeepsRandomPointsApartWithoutClicks) {
       }
       last = out;
     }
-    EXPECT_LE(largest, 2.0 / kFade + 1e-6) << "the source's change and a step of the fade";
-    EXPECT_GT(sum / 100'000, 0.1) << "something goes on sounding";
+    EXPECT_LE(largest, 2.0 / kFade + 1e-6) << "the source's change plus a step of the fade";
+    EXPECT_GT(sum / 100'000, 0.1) << "the gate does not mute everything";
     EXPECT_EQ(allocations, 0U);
     EXPECT_GT(gate.weakened(), 1000);
   }

@@ -1,4 +1,4 @@
-// The last stage before a device: caps hold for whatever comes, and what keeps them passes
+// The last stage before a device: caps hold for any input, and input within the caps passes
 // unchanged.
 #include "prostm/device/safety/safety_limiter.hpp"
 
@@ -32,7 +32,7 @@ class Given final : public SampleSource {
   int foci_;
 };
 
-/// A small array, so that exact sums are cheap; as loud as 256 of the usual transducers.
+/// A small array, so that exact sums are cheap, with the output of 256 of the usual transducers.
 TransducerArray small_array() {
   TransducerArray array = usx_array();
   array.position.clear();
@@ -61,13 +61,13 @@ Caps random_caps(const TransducerArray& array, Random& random) {
   return {caps, std::make_shared<const SafetyLevels>(array, Medium{}, caps.head_distance)};
 }
 
-/// Looks at samples one after another, and knows the levels by a way of its own.
+/// Checks samples one after another, with an independent computation of the levels.
 class Judge {
  public:
   Judge(const TransducerArray& array, const Caps& caps, double rate)
       : array_(array), caps_(caps), rate_(rate) {}
 
-  /// Looks at a sample of all focal points. @param exact with the exact sum.
+  /// Checks a sample of all focal points. @param exact whether to compute the exact sum.
   void look(std::span<const FocusSample> sample, bool exact) {
     const SafetySettings& cap = caps_.caps;
     double sum = 0.0, power = 0.0, loudest = 0.0, truth = 0.0;
@@ -98,7 +98,7 @@ class Judge {
     }
     in_place = in_place && known;
     most_power = std::max(most_power, power / cap.power);
-    // a device that takes intensity as a drive, and one that takes it as a pressure
+    // for a device that takes intensity as a drive, and for one that takes it as a pressure
     const double scale = static_cast<double>(caps_.levels->full_scale);
     const auto made = [&](double full) {
       return std::max(std::min(1.0, sum) * full, std::min(full, sum * scale));
@@ -114,7 +114,7 @@ class Judge {
 
   bool finite = true, in_range = true, in_place = true;
   double change = 0.0, step = 0.0, most_power = 0.0, most_exact = 0.0, most_pressure = 0.0,
-         most_radiation = 0.0;  // over their caps
+         most_radiation = 0.0;  // relative to their caps
   double most_mean = 0.0, most_head = 0.0;
 
   bool keeps_caps() const {
@@ -124,7 +124,7 @@ class Judge {
   }
 
  private:
-  /// Sums of every second, by the difference of running sums.
+  /// Adds the sums over each second, as differences of running sums.
   void add(double radiation, double energy) {
     const auto second = static_cast<std::size_t>(rate_);
     sums_.push_back({(sums_.empty() ? 0.0 : sums_.back().first) + radiation,
@@ -146,7 +146,7 @@ class Judge {
   std::vector<std::pair<double, double>> sums_;
 };
 
-/// A stream of some kind: noise, jumps, walks, full output, with faults now and then.
+/// A stream of a random kind: noise, jumps, walks, full output, with occasional faults.
 class RandomStream {
  public:
   RandomStream(Random& random, std::size_t foci) : random_(random), state_(foci) { begin(); }
@@ -228,10 +228,10 @@ TEST(SafetyLimiter, CapsHoldFor100000RandomStreams) {
     ASSERT_LE(judge.step, 8.0 / 40e3 * 1.002);
     exceeded += raw.keeps_caps() ? 0 : 1;
   }
-  EXPECT_EQ(exceeded, kCaps) << "without the limiter every set of streams exceeds them";
+  EXPECT_EQ(exceeded, kCaps) << "every set of streams needs the limiter";
 }
 
-/// Up to four paths near and far, some of them beside the array.
+/// Up to four paths near and far, some of them off to the side of the array.
 void random_plan(Random& random, LiftedPlan& plan) {
   plan.paths.clear();
   ++plan.id;
@@ -282,10 +282,10 @@ TEST(SafetyLimiter, CapsHoldFor100000RandomPlans) {
         << judge.most_radiation << " mean " << judge.most_mean << " head " << judge.most_head;
     ASSERT_LE(judge.change, 0.025 * 1.001);
     ASSERT_LE(judge.step, 8.0 / 40e3 * 1.002);
-    EXPECT_EQ(chain.safety().change + chain.safety().not_finite, 0) << "an emission never errs";
+    EXPECT_EQ(chain.safety().change + chain.safety().not_finite, 0) << "an emission has no faults";
     exceeded += raw.keeps_caps() ? 0 : 1;
   }
-  EXPECT_EQ(exceeded, kCaps) << "without the limiter every set of plans exceeds them";
+  EXPECT_EQ(exceeded, kCaps) << "every set of plans needs the limiter";
 }
 
 /// Plays samples from a function of time [samples] and focal point, in blocks of 40.
@@ -303,7 +303,7 @@ Samples play(SampleChain& chain, Given& given, int samples, const Make& make, in
   return all;
 }
 
-/// Begins as fast as an emission may.
+/// Rises as fast as an emission may.
 FocusSample at_full_output(int sample, int focus) {
   return {Eigen::Vector3f(0.02F * static_cast<float>(focus), 0.0F, 0.2F),
           std::min(1.0F, static_cast<float>(sample) / 40.0F)};
@@ -330,7 +330,7 @@ TEST(SafetyLimiter, FullOutputOfTheShippedArraysPassesAtTheUsualHeight) {
   }
 }
 
-TEST(SafetyLimiter, FullOutputTakes50MillisecondsAfterTheStartAndAfterSilence) {
+TEST(SafetyLimiter, FullOutputIsReached50MillisecondsAfterTheStartAndAfterSilence) {
   Given given(2);
   SampleChain chain(given, usx_limits());
   const auto full_after = [&](int first, const auto& make) {
@@ -349,7 +349,7 @@ TEST(SafetyLimiter, FullOutputTakes50MillisecondsAfterTheStartAndAfterSilence) {
   EXPECT_NEAR(static_cast<double>(full_after(16'000, at_full_output)), 2000.0, 45.0);
 }
 
-TEST(SafetyLimiter, AMeanCapBitesWithoutAStepAndStays) {
+TEST(SafetyLimiter, AMeanCapActsGraduallyAndPersists) {
   SafetySettings caps;
   caps.mean_radiation_pressure = 100.0;
   Given given(4);
@@ -363,24 +363,24 @@ TEST(SafetyLimiter, AMeanCapBitesWithoutAStepAndStays) {
   }
   EXPECT_LE(rise, 0.0251F);
   EXPECT_LE(fall, 0.0251F);
-  EXPECT_GT(most, out.back().intensity * 1.2F) << "it begins stronger";
+  EXPECT_GT(most, out.back().intensity * 1.2F) << "the start is stronger";
   const SafetyStats stats = chain.safety();
   EXPECT_GT(stats.mean_radiation_pressure, 0);
-  EXPECT_EQ(erred_samples(stats), 0) << "a cap is nobody's fault";
-  EXPECT_NEAR(stats.mean_high, 100.0 / 1.1, 0.5) << "the mean of 0.1 s that keeps it in any second";
-  // steady in the end, at the level that the cap allows
+  EXPECT_EQ(erred_samples(stats), 0) << "a cap is not an error";
+  EXPECT_NEAR(stats.mean_high, 100.0 / 1.1, 0.5) << "mean over 0.1 s that keeps the cap over 1 s";
+  // steady at the end, at the level that the cap allows
   for (std::size_t i = 4 * 2500; i < out.size(); ++i)
     ASSERT_GT(out[i].intensity, 0.05F) << "no dip";
   for (std::size_t i = out.size() - 4 * 40'000; i < out.size(); ++i)
     ASSERT_NEAR(out[i].intensity, out.back().intensity, 1e-3F);
 }
 
-TEST(SafetyLimiter, ACapBitesWithoutAStepWhenAFocalPointComesNear) {
+TEST(SafetyLimiter, ACapActsGraduallyWhenAFocalPointApproaches) {
   SafetySettings caps;
   caps.acoustic_pressure = 7e3;
   Given given(4);
   SampleChain chain(given, usx_limits(caps));
-  // at 8 m/s, the fastest that an emission moves
+  // at 8 m/s, the largest speed of an emission
   const auto falling = [](int i, int f) {
     FocusSample s = at_full_output(i, f);
     s.p_D.z() = 0.35F - 0.2e-3F * static_cast<float>(std::clamp(i - 4000, 0, 1000));
@@ -396,12 +396,12 @@ TEST(SafetyLimiter, ACapBitesWithoutAStepWhenAFocalPointComesNear) {
   EXPECT_LE(chain.safety().acoustic_high, 7e3 * 1.001);
 }
 
-TEST(SafetyLimiter, ACapThatNeedsAFasterFallSilencesAll) {
+TEST(SafetyLimiter, ACapThatNeedsAFasterFallMutesAll) {
   SafetySettings caps;
   caps.acoustic_pressure = 7e3;
   Given given(2);
   SampleLimits limits = usx_limits(caps);
-  limits.sample_rate = 400.0;  // so that 20 mm are no jump
+  limits.sample_rate = 400.0;  // so that 20 mm are not a jump
   SampleChain chain(given, limits);
   const auto nearing = [](int i, int f) {
     const float z = 0.4F - 0.019F * static_cast<float>(std::clamp(i - 100, 0, 15));
@@ -414,12 +414,12 @@ TEST(SafetyLimiter, ACapThatNeedsAFasterFallSilencesAll) {
     was_silent = was_silent || (i > 200 && out[i].intensity == 0.0F);
   }
   EXPECT_TRUE(was_silent);
-  EXPECT_EQ(chain.safety().jump, 0) << "the cap's doing";
+  EXPECT_EQ(chain.safety().jump, 0) << "due to the cap, not to a jump";
   EXPECT_GT(chain.safety().acoustic_pressure, 30);
   EXPECT_LE(chain.safety().acoustic_high, 7e3 * 1.001);
 }
 
-TEST(SafetyLimiter, AJumpWaitsForTheSilenceOfThatFocalPoint) {
+TEST(SafetyLimiter, AJumpIsHeldUntilThatFocalPointIsSilent) {
   Given given(2);
   SampleChain chain(given, usx_limits());
   const auto jumping = [](int i, int f) {
@@ -431,7 +431,7 @@ TEST(SafetyLimiter, AJumpWaitsForTheSilenceOfThatFocalPoint) {
   for (std::size_t i = 2; i < out.size(); ++i) {
     ASSERT_LE(std::abs(out[i].intensity - out[i - 2].intensity), 0.0251F);
     if (i > 2 * 4000 && i % 2 == 1) {
-      ASSERT_EQ(out[i].intensity, 1.0F) << "the other goes on";
+      ASSERT_EQ(out[i].intensity, 1.0F) << "the other is unchanged";
     }
     if (out[i].p_D == out[i - 2].p_D) continue;
     ASSERT_EQ(out[i - 2].intensity, 0.0F);
@@ -442,7 +442,7 @@ TEST(SafetyLimiter, AJumpWaitsForTheSilenceOfThatFocalPoint) {
   EXPECT_EQ(capped_samples(chain.safety()) + erred_samples(chain.safety()), 0);
 }
 
-TEST(SafetyLimiter, AJumpSilencesAllOfADeviceWithOneIntensity) {
+TEST(SafetyLimiter, AJumpMutesAllOnADeviceWithOneIntensity) {
   Given given(2);
   SampleLimits limits = usx_limits();
   limits.one_intensity = true;
@@ -462,7 +462,7 @@ TEST(SafetyLimiter, AJumpSilencesAllOfADeviceWithOneIntensity) {
   EXPECT_EQ(out[out.size() - 2].p_D.x(), -0.02F);
 }
 
-TEST(SafetyLimiter, AJumpToALouderPlaceKeepsItsCap) {
+TEST(SafetyLimiter, AJumpToAPositionWithMorePressureKeepsItsCap) {
   SafetySettings caps;
   caps.acoustic_pressure = 6e3;
   Given given(1);
@@ -474,7 +474,7 @@ TEST(SafetyLimiter, AJumpToALouderPlaceKeepsItsCap) {
   for (std::size_t i = 1; i < out.size(); ++i) {
     ASSERT_LE(std::abs(out[i].intensity - out[i - 1].intensity), 0.0251F);
     if (out[i].p_D == out[i - 1].p_D) continue;
-    ASSERT_LT(out[i].intensity, 0.03F) << "it does not sound on the way";
+    ASSERT_LT(out[i].intensity, 0.03F) << "silent during the jump";
   }
   EXPECT_EQ(out.back().p_D.z(), 0.1F);
   EXPECT_GT(out.back().intensity, 0.2F);
@@ -482,7 +482,7 @@ TEST(SafetyLimiter, AJumpToALouderPlaceKeepsItsCap) {
   EXPECT_LE(chain.safety().acoustic_high, 6e3 * 1.001);
 }
 
-TEST(SafetyLimiter, APlaceThatIsTooNearIsSilent) {
+TEST(SafetyLimiter, APositionTooCloseIsMuted) {
   Given given(1);
   SampleChain chain(given, usx_limits());
   const auto near = [](int i, int) {
@@ -495,7 +495,7 @@ TEST(SafetyLimiter, APlaceThatIsTooNearIsSilent) {
   EXPECT_GT(chain.safety().place, 0);
 }
 
-TEST(SafetyLimiter, AMuteIsObeyedWhateverTheSourceDoes) {
+TEST(SafetyLimiter, AMuteActsWhateverTheSourceDoes) {
   Given given(2);
   SampleChain chain(given, usx_limits());
   const auto mute = std::make_shared<Mute>();
@@ -521,7 +521,7 @@ TEST(SafetySettings, ACapCanOnlyBeLowered) {
   EXPECT_THROW(SafetyLimiter({.caps = raised}), std::invalid_argument);
 }
 
-TEST(SafetyStats, TellsErrorsFromCaps) {
+TEST(SafetyStats, DistinguishesErrorsFromCaps) {
   SafetyStats stats;
   stats.not_finite = 1;
   stats.head_level = 5;

@@ -29,7 +29,7 @@ class Made final : public SampleSource {
   FocusSample (*make_)(std::int64_t, int);
 };
 
-/// Like an emission: smooth, and within its power limit. It begins so slowly that no ramp is
+/// Like an emission: smooth, and within its power limit. It rises so slowly that no ramp is
 /// needed.
 FocusSample smooth(std::int64_t sample, int focus) {
   const auto t = static_cast<double>(sample);
@@ -52,7 +52,7 @@ bool same(const FocusSample& a, const FocusSample& b) {
   return a.p_D == b.p_D && a.intensity == b.intensity;
 }
 
-TEST(SampleChain, PassesAnEmissionToTheBit) {
+TEST(SampleChain, PassesAnEmissionUnchanged) {
   Made source(4, smooth);
   SampleChain chain(source, {});
   const std::vector<FocusSample> given = filled(source, 8000, 40), out = filled(chain, 8000, 40);
@@ -72,10 +72,10 @@ TEST(SampleChain, DecimatesForAnyBlocks) {
       ASSERT_TRUE(same(out[static_cast<std::size_t>(3 * i + f)], smooth(7 * i, f))) << i;
     }
   }
-  EXPECT_EQ(chain->limited(), 0) << "a device of fewer samples takes larger changes of each";
+  EXPECT_EQ(chain->limited(), 0) << "the allowed change grows with the decimation";
 }
 
-/// Like foci of AM: the intensity comes and goes, and the focal point jumps where it is 0.
+/// Like AM foci: the intensity rises and falls, and the focal point jumps where it is 0.
 FocusSample jumping(std::int64_t sample, int focus) {
   const std::int64_t period = 200 + focus;
   const double phase = static_cast<double>(sample % period) / static_cast<double>(period);
@@ -102,7 +102,7 @@ TEST(SampleChain, IsSilentAtAJumpWhoseSilentSampleIsDropped) {
         if (out[i].p_D == out[i - 2].p_D) continue;
         ASSERT_EQ(std::min(out[i].intensity, out[i - 2].intensity), 0.0F) << factor << " " << i;
       }
-      EXPECT_GT(passed, (own ? 0.95 : 0.9) * given) << factor << " hardly anything else is silent";
+      EXPECT_GT(passed, (own ? 0.95 : 0.9) * given) << factor << ": mutes too much";
     }
   }
 }
@@ -120,7 +120,7 @@ TEST(SampleChain, SharesTheLargestIntensity) {
   }
 }
 
-TEST(SampleChain, ALimiterStaysLast) {
+TEST(SampleChain, TheLimiterStaysLast) {
   Made source(2, [](std::int64_t sample, int) {
     return FocusSample{Eigen::Vector3f::Zero(), sample < 10 ? 0.0F : 1.0F};
   });
@@ -131,17 +131,17 @@ TEST(SampleChain, ALimiterStaysLast) {
   FocusSample seen;
   for (std::size_t i = 0; i < out.size(); ++i) {
     ASSERT_TRUE(before.next(seen));
-    EXPECT_EQ(seen.intensity, i < 20 ? 0.0F : 1.0F) << "what came from the source";
+    EXPECT_EQ(seen.intensity, i < 20 ? 0.0F : 1.0F) << "unchanged from the source";
     if (i >= 2) {
       EXPECT_LE(out[i].intensity - out[i - 2].intensity, 0.0251F);
     }
   }
   EXPECT_FALSE(before.next(seen));
   EXPECT_EQ(out.back().intensity, 1.0F);
-  EXPECT_EQ(chain.limited(), 2) << "each jumped once";
+  EXPECT_EQ(chain.limited(), 2) << "each focal point jumped once";
 }
 
-TEST(SampleChain, ATapThatNobodyReadsLosesAndCounts) {
+TEST(SampleChain, AFullTapDropsAndCountsSamples) {
   Made source(1, smooth);
   SampleChain chain(source, {});
   SampleTap& tap = chain.add<SampleTap>(30);
@@ -152,7 +152,7 @@ TEST(SampleChain, ATapThatNobodyReadsLosesAndCounts) {
   EXPECT_TRUE(same(oldest, smooth(0, 0)));
 }
 
-TEST(SafetyLimiter, NothingThatAStageDoesLeavesTheLimits) {
+TEST(SafetyLimiter, NoStageCanExceedTheLimits) {
   static Random random(7);
   Made wild(4, [](std::int64_t, int) {
     constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRate = 40e3;
 
-/// An emission of one method that plans feed, its chain, and every sample that leaves.
+/// An emission of one method with its plans and its chain, and whether each sample is silent.
 class Output {
  public:
   Output(Method method, double am_frequency, int decimation, int block)
@@ -31,7 +31,7 @@ class Output {
     method_ = method;
   }
 
-  /// @param fed whether plans come.
+  /// @param fed whether new plans arrive.
   void play(double seconds, bool fed = true) {
     const auto blocks = static_cast<int>(seconds * rate_ / block_);
     for (int i = 0; i < blocks; ++i) {
@@ -55,7 +55,7 @@ class Output {
     }
     return all;
   }
-  /// The changes that the samples themselves show: silences under `gap` belong to a sound.
+  /// Finds the changes by a search of the samples; silences shorter than `gap` belong to a sound.
   std::vector<std::int64_t> searched(double gap) const {
     std::vector<std::int64_t> found;
     std::int64_t last = -1;
@@ -104,7 +104,7 @@ struct Case {
 
 class SoundWatchOf : public testing::TestWithParam<Case> {};
 
-TEST_P(SoundWatchOf, AnEmissionTellsTheSamplesThatASearchFinds) {
+TEST_P(SoundWatchOf, ReportsTheChangesThatASearchFinds) {
   const Case c = GetParam();
   Output output(c.method, c.am_frequency, c.decimation, c.block);
   Random random(7);
@@ -116,7 +116,7 @@ TEST_P(SoundWatchOf, AnEmissionTellsTheSamplesThatASearchFinds) {
     output.mute->set(MuteReason::Study, false);
     output.play(0.3 + 0.1 * random.uniform());
     output.mute->set(MuteReason::Study, true);
-    output.watch.label(99);  // is of the next, as when a study has gone on
+    output.watch.label(99);  // the label of the next sound, as when a study has continued
     output.play(0.07 + 0.1 * random.uniform());
   }
   const std::vector<SoundChange> told = output.changes();
@@ -138,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{Method::Am, 100.0, 10, 20}, Case{Method::ProStm, 200.0, 1, 40},
                     Case{Method::ProStm, 200.0, 1, 257}, Case{Method::ProStm, 200.0, 10, 20}));
 
-TEST(SoundWatch, EndsWhereNoPlanComesWithoutAMute) {
+TEST(SoundWatch, EndsWithoutAMuteIfPlansStopArriving) {
   Output output(Method::ProStm, 200.0, 1, 40);
   output.play(0.3);
   output.play(0.4, false);
@@ -161,10 +161,10 @@ TEST(SoundWatch, EndsAfterTheLastSampleOfADeviceThatStops) {
   EXPECT_EQ(told[1].stream, 1);
 }
 
-TEST(SoundWatch, SaysWhetherAReaderHasReadAllAndCountsWhatNobodyReads) {
+TEST(SoundWatch, ReportsWhetherAllIsReadAndCountsLostChanges) {
   Output output(Method::ProStm, 200.0, 1, 40);
   output.play(0.1);
-  EXPECT_TRUE(output.watch.is_read()) << "nobody reads";
+  EXPECT_TRUE(output.watch.is_read()) << "there is no reader";
   output.watch.begin_reading();
   EXPECT_FALSE(output.watch.is_read());
   EXPECT_EQ(output.changes().size(), 1U);

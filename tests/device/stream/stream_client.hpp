@@ -1,6 +1,6 @@
 #pragma once
-/// A subscriber of prostm-stream/1 for tests. It decodes by the tables of docs/devices/stream.md,
-/// without the device's own code.
+/// A subscriber to prostm-stream/1 for tests. It decodes by the tables of docs/devices/stream.md,
+/// without using the device's own code.
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -20,7 +20,7 @@ namespace prostm::test {
 
 enum class Over { Tcp, Udp };
 
-/// A number at a place of a message's body, as the wire has it.
+/// A number at an offset of a message's body, in wire format.
 template <class T>
 T number_at(const std::vector<std::uint8_t>& bytes, std::size_t at) {
   T value{};
@@ -100,7 +100,7 @@ class StreamClient {
     send(message(2, body));
   }
 
-  /// Subscribes; returns HELLO, or what came in its place.
+  /// Subscribes; returns HELLO, or the message that arrived instead.
   std::optional<StreamMessage> subscribe(const StreamWish& wish = {}) {
     wish_ = wish;
     renewed_ = std::chrono::steady_clock::now();
@@ -113,7 +113,7 @@ class StreamClient {
     return next();
   }
 
-  /// The next message; none after a time that only a failure takes, or at the end.
+  /// The next message; empty after a time-out that only a failure reaches, or at the end.
   std::optional<StreamMessage> next(int wait_ms = 10'000) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(wait_ms);
     for (;;) {
@@ -134,7 +134,7 @@ class StreamClient {
       in_.insert(in_.end(), bytes, bytes + got);
     }
   }
-  /// The next message of a kind; others are passed over, but not for longer than next() waits.
+  /// The next message of a kind. Others are skipped, for at most the time-out of next().
   std::optional<StreamMessage> next_of(int kind) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
     while (std::chrono::steady_clock::now() < end) {
@@ -143,7 +143,7 @@ class StreamClient {
     }
     return {};
   }
-  /// Reads for so long, so that heartbeats do not fill the socket and push out what comes next.
+  /// Reads for this long, so that heartbeats do not fill the socket and displace later messages.
   void pass_over(std::chrono::milliseconds time) {
     const auto end = std::chrono::steady_clock::now() + time;
     for (;;) {
@@ -178,7 +178,7 @@ class StreamClient {
   }
 
   const Over over_;
-  std::optional<StreamWish> wish_;  // once it has subscribed
+  std::optional<StreamWish> wish_;  // set once subscribed
   std::chrono::steady_clock::time_point renewed_{};
   int fd_;
   std::vector<std::uint8_t> in_;

@@ -41,7 +41,7 @@ StreamDevice device_on_any_port(const StreamSettings& settings = {}) {
   return StreamDevice(settings, {"127.0.0.1", 0});
 }
 
-/// Checks that a block's samples carry their numbers. @param offset of the session's numbers.
+/// Checks that a block's samples carry their indices. @param offset of the session's indices.
 void expect_numbered(const StreamMessage& m, std::int64_t offset = 0) {
   const auto first = m.at<std::int64_t>(0);
   const int count = m.at<std::uint16_t>(16), stride = m.at<std::uint16_t>(18), foci = m.body[20];
@@ -104,7 +104,7 @@ TEST_P(StreamOver, EverySampleArrivesWithItsTime) {
     ++blocks;
     in_time += m->at<std::int64_t>(8) > steady_ns() ? 1 : 0;
   }
-  // most arrive before they play, however loaded the machine is
+  // most arrive before they are played, however loaded the machine is
   EXPECT_GT(in_time, blocks / 2);
   const std::int64_t sample = next - 1;
   EXPECT_NEAR(device.play_time(sample), static_cast<double>(time - 25'000) * 1e-9, 1e-6);
@@ -112,7 +112,7 @@ TEST_P(StreamOver, EverySampleArrivesWithItsTime) {
   EXPECT_EQ(source.allocations, 0u);
 }
 
-TEST_P(StreamOver, WishesAreKept) {
+TEST_P(StreamOver, WishesAreHonoured) {
   StreamDevice device = device_on_any_port({.block_samples = 50});
   NumberedSource source(4);
   ASSERT_EQ(device.start(source), DeviceStatus::Running);
@@ -143,7 +143,7 @@ TEST_P(StreamOver, WishesAreKept) {
   EXPECT_GT(empty, 5);
 }
 
-TEST_P(StreamOver, AskingForTheTimeIsAnswered) {
+TEST_P(StreamOver, ARequestForTheTimeIsAnswered) {
   StreamDevice device = device_on_any_port();
   StreamClient client(GetParam(), device.port());
   ASSERT_TRUE(client.subscribe());
@@ -187,7 +187,7 @@ TEST_P(StreamOver, ByeEndsASubscription) {
   EXPECT_TRUE(eventually([&] { return device.stream_stats().subscribers == 0; }));
 }
 
-TEST_P(StreamOver, TheEndOfProstmIsSaid) {
+TEST_P(StreamOver, TheEndOfTheProgramIsAnnounced) {
   auto device = std::make_unique<StreamDevice>(StreamSettings{}, HostPort{"127.0.0.1", 0});
   StreamClient client(GetParam(), device->port());
   ASSERT_TRUE(client.subscribe());
@@ -198,7 +198,7 @@ TEST_P(StreamOver, TheEndOfProstmIsSaid) {
   EXPECT_THAT(end->text(4), HasSubstr("prostm ends"));
 }
 
-TEST_P(StreamOver, StatesAreSaidAndHeartbeatsGoOn) {
+TEST_P(StreamOver, StatesAreSentAndHeartbeatsContinue) {
   StreamDevice device = device_on_any_port();
   StreamClient client(GetParam(), device.port());
   ASSERT_TRUE(client.subscribe());
@@ -225,7 +225,7 @@ TEST_P(StreamOver, StatesAreSaidAndHeartbeatsGoOn) {
   const std::int64_t sent = source.filled;
   EXPECT_EQ(beat->at<std::int64_t>(8), sent);
 
-  // the session's samples count on
+  // sample indices continue across the session
   NumberedSource again(2);
   ASSERT_EQ(device.start(again), DeviceStatus::Running);
   EXPECT_EQ(device.samples() / 1000, 0);
@@ -235,7 +235,7 @@ TEST_P(StreamOver, StatesAreSaidAndHeartbeatsGoOn) {
   expect_numbered(*block, sent);
 }
 
-TEST(StreamDevice, KeepsTimeThoughNobodyListens) {
+TEST(StreamDevice, KeepsTimeWithoutSubscribers) {
   StreamDevice device = device_on_any_port();
   EXPECT_EQ(device.info().block_samples, 40);
   EXPECT_TRUE(device.info().streams);
@@ -256,7 +256,7 @@ TEST(StreamDevice, KeepsTimeThoughNobodyListens) {
   EXPECT_THAT(device.problem(), HasSubstr("1 to 8"));
 }
 
-TEST(StreamDevice, SaysWhyItCannotListen) {
+TEST(StreamDevice, ReportsWhyItCannotListen) {
   const StreamDevice first = device_on_any_port();
   const auto problem = [](const HostPort& address) {
     try {
@@ -292,11 +292,11 @@ TEST(StreamDevice, DatagramsNeedTheTokenOfTheirAddress) {
   EXPECT_EQ(device.stream_stats().subscribers, 1);
 }
 
-TEST(StreamDevice, ALostDatagramShowsInTheIndices) {
+TEST(StreamDevice, ALostDatagramShowsAsAGapInTheIndices) {
   StreamDevice device = device_on_any_port();
   NumberedSource source(8);
   ASSERT_EQ(device.start(source), DeviceStatus::Running);
-  // a receiver with little room, which does not read for a while
+  // a receiver with a small buffer that pauses reading
   StreamClient client(Over::Udp, device.port(), 4096);
   ASSERT_TRUE(client.subscribe());
   sleep_ms(100);
@@ -311,7 +311,7 @@ TEST(StreamDevice, ALostDatagramShowsInTheIndices) {
   EXPECT_GT(lost, 0);
 }
 
-TEST(StreamDevice, ASlowReaderIsLeftOutAndHoldsUpNobody) {
+TEST(StreamDevice, ASlowReaderIsSkippedAndDelaysNoOther) {
   StreamDevice device = device_on_any_port();
   NumberedSource source(8);
   ASSERT_EQ(device.start(source), DeviceStatus::Running);
@@ -333,7 +333,7 @@ TEST(StreamDevice, ASlowReaderIsLeftOutAndHoldsUpNobody) {
     quick.ask_time(0);
   }
   EXPECT_EQ(source.allocations, 0u);
-  // what it reads at last are whole messages, with each gap marked and counted
+  // it finally reads complete messages, with each gap marked and counted
   std::int64_t skipped = 0;
   next = -1;
   while (skipped < 300 * 40 / 2) {
@@ -351,7 +351,7 @@ TEST(StreamDevice, ASlowReaderIsLeftOutAndHoldsUpNobody) {
   }
 }
 
-TEST(StreamDevice, TheNinthSubscriberIsToldSo) {
+TEST(StreamDevice, TheNinthSubscriberIsRejected) {
   StreamDevice device = device_on_any_port();
   std::vector<std::unique_ptr<StreamClient>> clients;
   for (int i = 0; i < 8; ++i) {
@@ -371,7 +371,7 @@ TEST(StreamDevice, TheNinthSubscriberIsToldSo) {
   }
 }
 
-TEST(StreamDevice, WrongMessagesAreAnsweredInWordsAndTheConnectionCloses) {
+TEST(StreamDevice, WrongMessagesAreAnsweredWithASentenceAndClosed) {
   StreamDevice device = device_on_any_port();
   const auto answer = [&](const std::vector<std::uint8_t>& bytes) {
     StreamClient client(Over::Tcp, device.port());
@@ -415,7 +415,7 @@ TEST(StreamDevice, WrongDatagramsAreAnsweredOrIgnored) {
   EXPECT_EQ(error(bytes), 35);
   EXPECT_EQ(error(client.subscribe_message({.want = 2})), 38);
   EXPECT_EQ(error(StreamClient::message(2, std::vector<std::uint8_t>(8))), 39);
-  // what is not of the protocol, or of a server, is not answered
+  // messages outside the protocol, or of a server, are not answered
   client.send({1, 2, 3});
   client.send(std::vector<std::uint8_t>(1500, 7));
   client.send(StreamClient::message(24, std::vector<std::uint8_t>(20)));
@@ -423,7 +423,7 @@ TEST(StreamDevice, WrongDatagramsAreAnsweredOrIgnored) {
   EXPECT_FALSE(client.next(50));
 }
 
-TEST(StreamDevice, ServesOnAfterAHundredThousandRandomMessages) {
+TEST(StreamDevice, StillServesAfterAHundredThousandRandomMessages) {
   StreamDevice device = device_on_any_port();
   NumberedSource source;
   ASSERT_EQ(device.start(source), DeviceStatus::Running);

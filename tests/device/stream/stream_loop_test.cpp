@@ -1,4 +1,4 @@
-// Loops over the stream, and the sending without allocation.
+// Loops over the stream, and sending without allocation.
 #include <gmock/gmock.h>
 #include <sys/socket.h>
 
@@ -43,7 +43,7 @@ std::vector<float> whole_loop(StreamClient& client, float mark, std::uint32_t& i
   return x;
 }
 
-TEST(StreamLoops, ArriveWholeAndInStepWithTheSamples) {
+TEST(StreamLoops, ArriveCompleteAndInStepWithTheSamples) {
   StreamDevice device({}, {"127.0.0.1", 0});
   StreamClient loops(Over::Tcp, device.port()), samples(Over::Tcp, device.port());
   ASSERT_TRUE(loops.subscribe({.want = 2}));
@@ -60,7 +60,7 @@ TEST(StreamLoops, ArriveWholeAndInStepWithTheSamples) {
   EXPECT_EQ(start->at<std::int64_t>(8), 0);
   EXPECT_NEAR(device.play_time(0), static_cast<double>(start->at<std::int64_t>(16)) * 1e-9, 1e-6);
 
-  // the next takes over at the end of a lap
+  // the next loop starts at the end of a lap
   ASSERT_EQ(device.load_segment(loop_of(333, 3, 2.0F), 3), DeviceStatus::Running);
   const std::vector<float> second = whole_loop(loops, 2.0F, second_id);
   EXPECT_EQ(second.size(), 999u);
@@ -84,7 +84,7 @@ TEST(StreamLoops, ArriveWholeAndInStepWithTheSamples) {
   }
 }
 
-TEST(StreamLoops, AreRefusedWhileAStreamPlays) {
+TEST(StreamLoops, AreRejectedWhileAStreamPlays) {
   StreamDevice device({}, {"127.0.0.1", 0});
   test::NumberedSource source;
   ASSERT_EQ(device.start(source), DeviceStatus::Running);

@@ -10,7 +10,7 @@
 
 namespace prostm::test {
 
-/// Samples that carry their own number, modulo kCycle, and that of the focal point.
+/// Samples that carry their index, modulo kCycle, and that of the focal point.
 class NumberedSource final : public SampleSource {
  public:
   static constexpr std::int64_t kCycle = 1 << 20;
@@ -31,7 +31,7 @@ class NumberedSource final : public SampleSource {
   }
 
   std::atomic<float> intensity{0.5F};
-  std::atomic<std::size_t> allocations{0};  ///< of the thread that pulls, since the first block
+  std::atomic<std::size_t> allocations{0};  ///< on the thread that pulls, since the first block
   std::atomic<std::int64_t> filled{0};
 
  private:

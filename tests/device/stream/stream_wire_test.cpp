@@ -19,7 +19,7 @@ using test::StreamMessage;
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A message as a receiver sees it.
+/// A message as received.
 StreamMessage seen(const Bytes& out, std::size_t size) {
   EXPECT_GE(size, 16u);
   EXPECT_EQ(std::memcmp(out.data(), "PSTM\1", 5), 0);
@@ -46,11 +46,11 @@ std::vector<FocusSample> ramp(std::size_t samples, std::size_t foci) {
   return out;
 }
 
-TEST(StreamWire, BlocksStandAsTheDocumentHasThem) {
+TEST(StreamWire, BlocksHaveTheDocumentedLayout) {
   const auto samples = ramp(40, 3);
   const BlockView block{1'000'000'000'040, 5'000'000'000, 40e3, 3, samples};
   const Wishes wishes{.foci = 2, .stride = 7};
-  // 1000000000040 = 7 · 142857142862 + 6: the next multiple is one on
+  // 1000000000040 = 7 · 142857142862 + 6: the next multiple is one sample later
   ASSERT_EQ(wished_samples(block, wishes), 6u);
   Bytes out(kLongestMessage);
   const StreamMessage m = seen(out, put_block(out, {77, 5}, block, wishes, 1, 4, 123, true));
@@ -77,7 +77,7 @@ TEST(StreamWire, BlocksStandAsTheDocumentHasThem) {
   }
 }
 
-TEST(StreamWire, ASharedIntensityKeepsThePowerOfASample) {
+TEST(StreamWire, ASharedIntensityPreservesThePowerOfASample) {
   Random random(3);
   Bytes out(kLongestMessage);
   for (int i = 0; i < 10'000; ++i) {
@@ -135,7 +135,7 @@ TEST(StreamWire, EveryReasonHasASentenceThatFitsADatagram) {
   }
 }
 
-TEST(StreamWire, RequestsAreReadOnlyWhole) {
+TEST(StreamWire, RequestsAreReadOnlyIfComplete) {
   const Bytes whole = subscribe_message();
   for (std::size_t n = 0; n < whole.size(); ++n) {
     const Reading part = read_request(std::span(whole).first(n));
@@ -167,7 +167,7 @@ TEST(StreamWire, EachWrongFieldHasItsReason) {
   EXPECT_EQ(changed(16 + 5, 8), Reason::None);
 }
 
-TEST(StreamWire, AnyBytesAreARequestWithinItsBoundsOrRefused) {
+TEST(StreamWire, AnyBytesGiveAValidRequestOrAnError) {
   Random random(5);
   int whole = 0;
   for (int i = 0; i < 100'000; ++i) {

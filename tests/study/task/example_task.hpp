@@ -1,5 +1,5 @@
 #pragma once
-/// A task that prostm does not have: one of three intervals is the level's, and two are the
+/// A task that prostm does not have: one of three intervals presents the level, and two the
 /// standard's. Which is the odd one out?
 
 #include "prostm/study/task/task.hpp"
@@ -25,7 +25,7 @@ class OddOneOut final : public Task {
                                                              "The third"};
 };
 
-/// The tasks of prostm, and this one.
+/// The tasks of prostm, plus this one.
 inline Tasks tasks_with_odd_one_out() {
   static const OddOneOut odd;
   static const std::vector<const Task*> tasks = [] {

@@ -1,4 +1,4 @@
-/// A task from outside prostm goes the whole way: protocol, session, file, analysis.
+/// A task from outside prostm in all stages: protocol, session, file, analysis.
 
 #include "study/task/example_task.hpp"
 
@@ -34,7 +34,7 @@ Protocol odd_protocol() {
   return protocol_from_toml(kText, "p.toml", {}, test::tasks_with_odd_one_out());
 }
 
-/// A session in a run that does at once what is wanted.
+/// A session in a run that obeys at once.
 struct Sitting {
   explicit Sitting(const std::string& path)
       : protocol(odd_protocol()), file(path), session(protocol, 1, file, kFacts, sight) {}
@@ -63,7 +63,7 @@ struct Sitting {
   StudySession session;
 };
 
-TEST(ExampleTask, IsReadFromAProtocolWhereItIsInTheTable) {
+TEST(ExampleTask, IsReadFromAProtocolIfItIsInTheTable) {
   EXPECT_THAT(test::input_error([] { protocol_from_toml(kText, "p.toml", {}); }),
               HasSubstr("line 4: trials.task"));
   const Protocol p = odd_protocol();
@@ -89,7 +89,7 @@ TEST(ExampleTask, PresentsTheLevelInOneOfThreeIntervals) {
     EXPECT_THAT(s.act({.what = Do::Answer, .yes = true}), HasSubstr("1 to 3"));
     EXPECT_EQ(s.act({.what = Do::Answer, .interval = t.level_at}), "");
     EXPECT_EQ(s.session.feedback(), true);
-    EXPECT_THAT(s.act({.what = Do::Correct}), HasSubstr("one of two answers"));
+    EXPECT_THAT(s.act({.what = Do::Correct}), HasSubstr("only if there are two to choose from"));
     const ResponseLine& line = s.file.lines().back();
     EXPECT_EQ(line["interval"], t.level_at);
     EXPECT_EQ(line["answer"], t.level_at);
@@ -100,7 +100,7 @@ TEST(ExampleTask, PresentsTheLevelInOneOfThreeIntervals) {
   for (int place = 1; place <= 3; ++place) EXPECT_GT(places[static_cast<std::size_t>(place)], 0);
 }
 
-/// Sits until the end, or until so many trials are done. @return whether the session is over.
+/// Runs until the end, or until this many trials are done. @return whether the session is over.
 bool sit(const std::string& path, SimulatedPerson& person, std::size_t trials) {
   Sitting s(path);
   while (s.session.phase() != StudyPhase::Done && s.session.trials_done() < trials) {

@@ -1,5 +1,5 @@
-/// A small OpenXR runtime without a display that plays hands from a recording, so that a client can
-/// be tried through the real loader. It does not prove conformance. It reads the environment:
+/// A small OpenXR runtime without a display that plays hands from a recording, to test a client
+/// through the real loader. It does not prove conformance. It reads these environment variables:
 ///
 ///   PROSTM_REPLAY_HANDS    the recording (.hands.jsonl), repeated from the session's begin on
 ///   PROSTM_REPLAY_WITHOUT  an extension to leave out
@@ -41,8 +41,8 @@ double now() {
 /// The only instance with its only session.
 struct Runtime {
   HandRecording recording;
-  std::size_t inferred = 0;           // joints of each hand
-  std::optional<double> loss;         // after the session's begin [s]
+  std::size_t inferred = 0;           // per hand
+  std::optional<double> loss;         // since the session's start [s]
   std::deque<XrSessionState> events;  // waiting to be polled
   std::optional<double> begun;        // on the steady clock [s]
   bool session = false;
@@ -196,7 +196,7 @@ XrResult XRAPI_CALL destroy_hand(XrHandTrackerEXT) {
   return XR_SUCCESS;
 }
 
-/// Returns the recording's newest frame at a time after the session's begin; it repeats.
+/// Returns the recording's newest frame at a time since the session's start; the recording repeats.
 const HandFrame& frame_at(double time) {
   const auto& frames = runtime->recording.frames;
   const double t = std::fmod(std::max(time, 0.0), frames.back().time + 0.2);
@@ -276,7 +276,7 @@ XrResult XRAPI_CALL get_instance_proc_addr(XrInstance, const char* name,
 
 }  // namespace
 
-// The negotiation between loader and runtime, from the loader's specification: no package has a
+// The negotiation between loader and runtime, as specified by the loader: no package has a
 // header for it.
 struct XrNegotiateLoaderInfo {
   std::uint32_t structType, structVersion;

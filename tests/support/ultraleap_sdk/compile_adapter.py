@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compiles the adapter to Ultraleap's SDK against the stand-in of its interface, with every compiler that is here.
+"""Compiles the adapter to Ultraleap's SDK against the stand-in of its interface, with every compiler available.
 
 usage: compile_adapter.py ROOT EIGEN     ROOT is the repository, EIGEN the folder with Eigen's headers
 

@@ -1,4 +1,4 @@
-// Library, devices and controls of the stand-in.
+// Libraries, devices and controls of the stand-in.
 #include <algorithm>
 
 #include "world.hpp"
@@ -71,7 +71,7 @@ void claim(const std::string& identifier, const std::string& owner) {
 
 namespace {
 
-/// Tells all listeners, without a lock of the world.
+/// Notifies all listeners, without a lock on the world.
 template <class Tell>
 void tell(Tell&& what) {
   std::vector<std::shared_ptr<ulh::LibraryEventListener>> listeners;

@@ -1,4 +1,4 @@
-// Emission of the stand-in.
+// Emissions of the stand-in.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,7 @@ using ultraleap_stand_in::world;
 
 namespace {
 
-constexpr int kAhead = 3;  // periods from a callback to its interval
+constexpr int kAhead = 3;  // periods between a callback and its interval
 
 LocalDuration seconds(double s) {
   return LocalDuration(std::llround(1e9 * s));
@@ -33,7 +33,7 @@ double distance(const ControlPoint& a, const ControlPoint& b) {
                     static_cast<double>(p.z) - static_cast<double>(q.z));
 }
 
-/// Fastest rate for some points [Hz]; 0 if the array cannot focus on so many.
+/// Fastest rate for a number of points [Hz]; 0 if the array does not support it.
 double rate_limit(const std::string& device, std::size_t points) {
   const auto& rates = world().find(device)->array.rates;
   return points < 1 || points > rates.size() ? 0.0 : static_cast<double>(rates[points - 1]);
@@ -94,7 +94,7 @@ void Streamer::run(const std::stop_token& stop) {
       skip_interval();
     }
     call_back();
-    // an interval that comes too late is left out
+    // an interval that starts too late is skipped
     while (LocalTimeClock::now() > next_begin_) skip_interval();
   }
 }

@@ -16,19 +16,19 @@ namespace ultraleap_stand_in {
 struct Entry {
   Array array;
   bool connected = true;
-  std::string owner;  // of the claim; "" for none
+  std::string owner;  // of the claim; "" if unclaimed
 };
 
 constexpr const char* kUs = "prostm (this client)";
 
 struct World {
-  std::recursive_mutex mutex;  // guards the members below, but for what is atomic
+  std::recursive_mutex mutex;  // guards the members below, except atomic ones
   std::vector<Entry> entries;
   std::vector<std::shared_ptr<ulh::LibraryEventListener>> listeners;
   std::map<std::string, std::string> refusals;
   Sink sink;
   bool service = true, manual = false, last_call_in_destructor = true;
-  ulh::Streamer* streamer = nullptr;  // the newest
+  ulh::Streamer* streamer = nullptr;  // the newest one
   std::string violation;
 
   std::atomic<int> violations{0}, emitters{0}, to_miss{0};
@@ -36,7 +36,7 @@ struct World {
   std::atomic<long> callbacks{0};
 
   Entry* find(const std::string& identifier);
-  /// An error if calls of that name are to fail.
+  /// Returns an error if calls of that name have to fail.
   std::optional<ulh::Unexpected> refusal(const std::string& call);
   void violate(const char* what);
 };
@@ -52,7 +52,7 @@ inline ulh::Unexpected failed(const std::string& message) {
 
 namespace Ultraleap::Haptics {
 
-/// Engine of an emitter: samples are numbered; sample k leaves at origin + k / rate.
+/// The engine of an emitter: samples are numbered; sample k leaves at origin + k / rate.
 class Streamer {
  public:
   explicit Streamer(const StreamingEmitter& emitter) : emitter_(emitter) {}
@@ -64,7 +64,7 @@ class Streamer {
   void skip_interval();
   LocalTimePoint time_of(std::int64_t sample) const;
   std::int64_t first_from(LocalTimePoint time) const;
-  /// Changes the rate from the next interval on.
+  /// Changes the rate, starting with the next interval.
   void change_rate(double rate);
   void commit(std::int64_t sample);
 

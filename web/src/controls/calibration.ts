@@ -1,4 +1,4 @@
-/// The guided step that finds where the tracker is: touch marks on the array, solve, look at the residual, save.
+/// The guided calibration of the tracker's pose: touch the marks on the array, solve, check the residual, save.
 
 import { find, make } from "../dom";
 import type { Calibration, PageMessage, State } from "../messages";
@@ -13,7 +13,7 @@ export class CalibrationGuide {
   private readonly solve = find<HTMLButtonElement>("calibration-solve");
   private readonly save = find<HTMLButtonElement>("calibration-save");
   private readonly cancel = find<HTMLButtonElement>("calibration-cancel");
-  private told = ""; // what is shown, as it came
+  private told = ""; // the calibration shown, as received
 
   constructor(private readonly send: (message: PageMessage) => void, private readonly shown: (calibration: Calibration | null) => void) {
     this.button.addEventListener("click", () => send({ type: "calibration", do: "begin" }));
@@ -29,10 +29,10 @@ export class CalibrationGuide {
 
   show(state: State): void {
     const { calibration } = state;
-    // only hands that are tracked live have a pose to find
+    // only live trackers have a pose to calibrate
     this.button.hidden = state.tracker === null && calibration === null;
     this.button.disabled = calibration !== null;
-    // states of trackers come all the time; buttons that are being pressed stay while nothing is new
+    // states arrive all the time: without news the elements stay, so that a button can be pressed
     const told = JSON.stringify(calibration);
     if (told === this.told) return;
     this.told = told;
@@ -67,7 +67,7 @@ export class CalibrationGuide {
     if (focused !== undefined) this.steps.querySelector<HTMLElement>(`[data-mark="${focused}"]`)?.focus();
   }
 
-  /// @return whether the guide is where the error belongs.
+  /// @return whether the guide is open and shows the error.
   showError(sentence: string): boolean {
     if (!this.dialog.open) return false;
     this.error.textContent = sentence;

@@ -1,4 +1,4 @@
-/// The text over and under a picture of the page.
+/// The text above and below a screenshot of the page.
 
 import { inWords } from "../address";
 import type { Control, State } from "../messages";
@@ -6,7 +6,7 @@ import { tileWords } from "../panels/tiles";
 import { short } from "../text";
 import type { Frame } from "../wire";
 
-/// "Paths 4"; the value as somebody reads it.
+/// For example "Paths 4", with the value formatted for readers.
 function turned(c: Control): string {
   if (c.kind === "choice") return `${c.label} ${c.choices.find((x) => x.value === c.value)?.label ?? c.value}`;
   if (c.kind === "switch") return `${c.label} ${c.value ? "on" : "off"}`;
@@ -19,7 +19,7 @@ export function caption(
 ): { title: string; parts: string[] } {
   const day = date.toISOString().replace("T", " ").slice(0, 19);
   if (frame === null) return { title: `prostm · ${day} UTC`, parts: [] };
-  // controls that do nothing now, as AM's modulation with PRO-STM, say nothing about the picture
+  // omits controls that have no effect now, such as AM's modulation while PRO-STM runs
   const settings = (state?.controls ?? []).filter((c) => c.enabled).map(turned);
   const scales = `colours: 0 to ${short(scale)} Pa, difference ±${short(scale)} Pa; bar in the planes: 50 mm`;
   return {

@@ -1,4 +1,4 @@
-/// Pictures (PNG) and films (WebM) of what is on the page.
+/// Screenshots (PNG) and films (WebM) of the page.
 
 import { find } from "../dom";
 import { compose, type PictureSource } from "./picture";

@@ -1,29 +1,29 @@
-/// The command that begins a run as this one is now.
+/// The command that starts a run with the current settings.
 
 import { inWords } from "../address";
 import type { State } from "../messages";
 
-// controls that have an option of `prostm run`; the others go into a settings file
+// controls that have an option of `prostm run`; a settings file holds the others
 const kOptions: Record<string, string> = {
   scene: "--scene", grid: "--grid", method: "--method", preset: "--preset", paths: "--paths", switch: "--switch",
 };
-const kHands = ["scripted", "openxr", "page"]; // that --hand knows by name
+const kHands = ["scripted", "openxr", "page"]; // sources that --hand accepts by name
 
 const quoted = (text: string) => (/^[\w.:/-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
 
 export interface CommandLine {
   command: string;
-  /// what has to be known beside it, as sentences; "" when it is complete
+  /// what the command does not cover, as sentences; "" when it is complete
   note: string;
 }
 
-// settings that those options set, and the time for a plan that a run in real time has by itself
+// settings covered by those options, and the planning time, which a real-time run sets itself
 const kSaid = [
   "pipeline.scene", "fluid.cells", "pipeline.method", "plan.preset", "plan.paths", "am.foci", "emit.foci", "emit.switch_at",
 ];
 const kLiveBudget = "plan.budget = 0.002";
 
-/// Whether a settings file says something that the options do not.
+/// Whether the settings file holds anything that the options do not.
 function needsFile(settings: string): boolean {
   let group = "";
   for (const line of settings.split("\n")) {

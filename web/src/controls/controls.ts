@@ -1,14 +1,14 @@
-/// The controls, as the program tells them: one field for each control, in its groups and its order.
+/// The controls that the program lists: one field for each, in its groups and order.
 
 import { find, make } from "../dom";
 import type { Control, Value } from "../messages";
 import { makeField, type Field } from "./fields";
 import type { Folds } from "./folds";
 
-// groups that are turned seldom are closed until somebody opens them
+// groups that are rarely changed are closed at first
 const kClosed = ["Output", "Hand"];
 
-/// The properties of a control that need another field when they change.
+/// The properties of a control that require a new field when they change.
 function shape(c: Control): string {
   return JSON.stringify([c.id, c.group, c.kind, c.label, c.unit, c.help, c.kind === "choice" ? c.choices : 0]);
 }
@@ -18,7 +18,7 @@ export class Controls {
   private readonly known = new Map<string, Control>();
   private made = "";
   private last: string | null = null;
-  private stale = false; // what the fields show may be of another program
+  private stale = false; // the fields may show values of an earlier connection
 
   constructor(private readonly send: (id: string, value: Value) => void, private readonly folds: Folds) {}
 
@@ -33,11 +33,11 @@ export class Controls {
     this.stale = false;
   }
 
-  /// The program is gone; whatever somebody was about to set is, too.
+  /// The connection is lost, and with it the values that were not sent.
   lost(): void { this.stale = true; }
 
-  /// Says beside a control why it could not be turned, and shows the value in force again.
-  /// @param id the control; without one, the control that was turned last. @return whether it was found.
+  /// Shows why a control could not be set, next to it, and restores the value in force.
+  /// @param id the control; by default the one set last. @return whether the control exists.
   showError(sentence: string, id = this.last): boolean {
     this.last = null;
     const field = this.fields.get(id ?? ""), control = this.known.get(id ?? "");
@@ -47,7 +47,7 @@ export class Controls {
     return true;
   }
 
-  /// Later errors belong to no control.
+  /// Later errors are not attributed to a control.
   forget(): void { this.last = null; }
 
   private set(id: string, value: Value): void {

@@ -1,4 +1,4 @@
-/// The field of one control: its label, what it is turned with, and where to say why it could not be.
+/// The field of one control: its label, its input element and its error message.
 
 import { make } from "../dom";
 import type { ChoiceControl, Control, NumberControl, Value } from "../messages";
@@ -6,26 +6,26 @@ import { short } from "../text";
 
 export interface Actions {
   set(id: string, value: Value): void;
-  /// Says beside the control why nothing was set, and shows the value in force again.
+  /// Shows next to the control why the value was rejected, and restores the value in force.
   refuse(id: string, sentence: string): void;
 }
 
-/// The elements after a control's label.
+/// The elements that follow a control's label.
 interface Made<C> {
   parts: HTMLElement[];
-  /// @param force shows the value, whatever somebody is typing.
+  /// @param force shows the value even while the user is typing.
   show(control: C, force: boolean): void;
 }
 
 export interface Field {
   root: HTMLElement;
   error: HTMLElement;
-  /// @param force shows the program's value, whatever somebody is about to set.
+  /// @param force shows the program's value even while a new one is being entered.
   show(control: Control, force?: boolean): void;
 }
 
-const kAnswered = 3000; // a value set here stands until the program has it, but no longer than this [ms]
-const kWordsInARow = 26; // letters of all choices together that still fit beside each other
+const kAnswered = 3000; // a value set here stays until the program confirms it, at most for this long [ms]
+const kWordsInARow = 26; // letters of all choices together that fit in one row
 
 function segments(control: ChoiceControl, id: string, act: Actions): Made<ChoiceControl> {
   const radios = control.choices.map(({ value, label }) => {
@@ -63,7 +63,7 @@ export function withUnit(value: number, unit: string | undefined): string {
   return `${short(value)}${unit ? ` ${unit}` : ""}`;
 }
 
-/// A slider and a box for the number. While somebody types no value takes the digits away.
+/// A slider and a number box. The box is not updated while the user types in it.
 function numbers(control: NumberControl, id: string, act: Actions): Made<NumberControl> {
   const bounds = { min: control.min, max: control.max, step: control.step, "aria-describedby": `${id}-error` };
   const slider = make("input", { type: "range", id, ...bounds });
@@ -136,8 +136,8 @@ export function makeField(control: Control, act: Actions): Field {
   const id = `control-${control.id}`;
   const letters = control.kind === "choice" ? control.choices.reduce((n, c) => n + c.label.length + 2, 0) : Infinity;
   const segmented = letters <= kWordsInARow;
-  let last = control; // as the program told it
-  let wanted: Value | undefined; // set here a moment ago: states that left the program before do not take it away
+  let last = control; // as last received from the program
+  let wanted: Value | undefined; // set here, not yet confirmed; earlier states still in transit do not overwrite it
   let answer: ReturnType<typeof setTimeout> | undefined;
 
   const set = (of: string, value: Value) => {

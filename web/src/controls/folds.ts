@@ -1,4 +1,4 @@
-/// Groups that fold: which of them are closed is kept in this browser and in the address.
+/// Groups that fold. Which ones are closed is stored in the browser and in the address.
 
 import type { Address } from "../address";
 import { remember, remembered } from "../stored";
@@ -10,20 +10,20 @@ export class Folds {
     for (const group of document.querySelectorAll<HTMLDetailsElement>("details[data-fold]")) this.adopt(group);
   }
 
-  /// A group with the name in data-fold; its `open` is what holds where nothing is kept.
+  /// Adds a group named by its data-fold; its `open` is the default where nothing is stored.
   adopt(group: HTMLDetailsElement): void {
     const name = group.dataset.fold ?? "";
     this.all.set(name, group);
     const kept = this.address.state.folded ?? remembered("folded")?.split(",");
     if (kept !== undefined) group.open = !kept.includes(name);
-    // somebody's click, not every toggle: those of the page itself are not to be kept
+    // only clicks are stored: toggle events also come from the page itself
     group.querySelector("summary")?.addEventListener("click", () => window.setTimeout(() => this.keep()));
   }
 
   private keep(): void {
     const folded = [...this.all].filter(([, group]) => !group.open).map(([name]) => name);
     const before = this.address.state.folded ?? [];
-    // groups that are not on the page now, as those of a program that is gone, stay as they are
+    // groups that are not on the page now, for instance of a lost connection, keep their state
     folded.push(...before.filter((name) => !this.all.has(name)));
     remember("folded", folded.join(","));
     this.address.set({ folded });

@@ -1,4 +1,4 @@
-/// The overlay that explains the page, on "?" and on its button.
+/// The overlay that explains the page, opened with "?" or its button.
 
 import { find } from "../dom";
 
@@ -8,7 +8,7 @@ export class Help {
   constructor() {
     find("show-help").addEventListener("click", () => this.toggle());
     find("close-help").addEventListener("click", () => this.dialog.close());
-    // beside the sheet
+    // a click outside the sheet closes it
     this.dialog.addEventListener("click", (e) => e.target === this.dialog && this.dialog.close());
   }
 

@@ -1,4 +1,4 @@
-/// The page's keys, wherever the focus is.
+/// The page's shortcuts, which work wherever the focus is.
 
 import { isCommand, keyAmong, takesText } from "../keyboard";
 
@@ -13,13 +13,13 @@ export interface Keys {
 const isIn = (target: EventTarget | null, parts: string) =>
   target instanceof HTMLElement && target.closest(parts) !== null;
 
-/// Whether a dialog takes the keys: it has the focus, or lies over the page.
+/// Whether a dialog receives the keys: it has the focus, or covers the page.
 function inDialog(target: EventTarget | null): boolean {
   return isIn(target, "dialog") || document.querySelector("dialog:modal") !== null;
 }
-/// Whether somebody enters a number, or chooses by letters.
+/// Whether the element takes numbers, or selects a choice by its letters.
 const takesLetters = (target: EventTarget | null) => inDialog(target) || isIn(target, 'input[type="number"], select');
-/// Whether Space means something there.
+/// Whether Space activates the element.
 const takesSpace = (target: EventTarget | null) => inDialog(target) || isIn(target, "input, select, button, summary");
 
 export function listen(keys: Keys): void {
@@ -30,13 +30,13 @@ export function listen(keys: Keys): void {
     if (key === "Escape" && !inDialog(target)) keys.letGo();
     if (key === "?" && !event.repeat) keys.help();
     if (key === "m") {
-      event.preventDefault(); // a list would choose by the letter
+      event.preventDefault(); // otherwise a list selects by the letter
       if (!event.repeat) keys.mute();
     }
     if (key === "f" && !event.repeat && !takesLetters(target)) keys.freeze();
     if (key === " " && !takesSpace(target)) {
       event.preventDefault();
-      // the strips stand still where they have the focus, the run elsewhere
+      // freezes the strips if they have the focus, pauses the run otherwise
       if (isIn(target, "#strips-card")) keys.freeze();
       else keys.play();
     }

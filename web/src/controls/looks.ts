@@ -1,4 +1,4 @@
-/// Theme and size of type, kept in this browser and in the address.
+/// Theme and type size, stored in the browser and in the address.
 
 import { kThemes, type Address, type Theme } from "../address";
 import { find } from "../dom";

@@ -1,4 +1,4 @@
-/// Whether the array sounds, and the button that silences it.
+/// Shows whether the array emits, and mutes it with a button.
 
 import { find, setText } from "../dom";
 import type { PageMessage } from "../messages";
@@ -13,7 +13,7 @@ const kWords: Record<Output["state"], string> = {
 export class OutputSign {
   private readonly button = find<HTMLButtonElement>("mute");
   private muted = false;
-  private sounded = -Infinity; // when it last did [ms]
+  private sounded = -Infinity; // when the array last emitted [ms]
 
   constructor(private readonly send: (message: PageMessage) => void) {
     this.button.addEventListener("click", () => this.toggle());
@@ -28,7 +28,7 @@ export class OutputSign {
     this.muted = frame.run.muted;
     this.button.setAttribute("aria-pressed", String(this.muted));
     setText(this.button.querySelector("span")!, this.muted ? "Unmute" : "Mute");
-    // modulated output is silent for moments, which do not count
+    // modulated output has silent moments, which are ignored
     const now = performance.now(), output = outputOf(frame);
     if (output.state === "on") this.sounded = now;
     if (output.state !== "off" || now - this.sounded > kMoment) this.show(output);

@@ -1,4 +1,4 @@
-/// The page's own hand: mouse, touch and keys over the picture move a hand above the array.
+/// The page's own hand: mouse, touch and keys in the picture move a hand above the array.
 
 import { Vector3 } from "three";
 import { find, setText } from "../dom";
@@ -7,13 +7,13 @@ import type { Hello, HandPose, PageMessage, Transport } from "../messages";
 import type { View } from "../scene/view";
 import { pixelsOf, zoomOf } from "../scene/wheel";
 
-const kEvery = 1000 / 60; // [ms] between messages at least
-const kAlive = 100; // [ms] between messages at most; the program releases the hand after 500
-const kStopped = 10_000; // [ms] between two messages, from which the page or its machine stood still
+const kEvery = 1000 / 60; // shortest interval between messages [ms]
+const kAlive = 100; // longest interval between messages [ms]; the program releases the hand after 500
+const kStopped = 10_000; // interval between messages [ms] above which the page or its machine was suspended
 
 const kWhy = {
   hidden: "The hand was released because this page was hidden. Switch it on to take it again.",
-  stopped: "The hand was released because this page stood still. Switch it on to take it again.",
+  stopped: "The hand was released because this page was suspended. Switch it on to take it again.",
   late: "The hand was released because this page's messages came late. It comes back when they are steady.",
 };
 
@@ -28,9 +28,9 @@ export class PageHand {
   private dragging: number | null = null;
   private at = { x: 0, y: 0 };
   private sent = 0;
-  private alive = 0; // when the hand was last known to move on [ms of the day's clock, which sleep does not stop]
+  private alive = 0; // time of the last check [ms, wall clock, which runs on while the machine sleeps]
   private waiting = false;
-  private held = false; // the program has said so
+  private held = false; // confirmed by the program
 
   constructor(
     private readonly view: View, private readonly send: (message: PageMessage) => void,
@@ -40,7 +40,7 @@ export class PageHand {
     this.toggleBox.addEventListener("change", () => (this.toggleBox.checked ? this.take() : this.release()));
     canvas.addEventListener("pointerdown", (e) => {
       if (!this.active || e.button !== 0) return;
-      // a second finger pinches, which is the eye's
+      // a second finger pinches, which moves the view
       this.dragging = this.dragging === null ? e.pointerId : null;
       this.at = { x: e.clientX, y: e.clientY };
     });
@@ -55,7 +55,7 @@ export class PageHand {
       this.change((p) => (p.palm_mm[2] += up));
     }, { passive: false });
     window.setInterval(() => this.keepAlive(), kAlive / 2);
-    // a page that nobody sees has no hand: browsers run its timers seldom, and nobody is there to move it
+    // a hidden page releases its hand: browsers slow its timers down, and nobody can see what the hand does
     document.addEventListener("visibilitychange", () => document.hidden && this.hide());
     document.addEventListener("freeze", () => this.hide());
     window.addEventListener("pagehide", () => this.hide());
@@ -90,7 +90,7 @@ export class PageHand {
     this.send({ type: "hand", release: true, hidden: true });
   }
 
-  /// Goes on holding the hand where it is, unless the page stood still meanwhile: whoever held it may have gone.
+  /// Keeps the hand where it is, unless the page was suspended: its user may have left.
   private keepAlive(): void {
     if (!this.active) return;
     const stopped = Date.now() - this.alive > kStopped;
@@ -103,7 +103,7 @@ export class PageHand {
     }
   }
 
-  /// Who holds the hand, as the program says, and which page this one is.
+  /// Updates the hand from the program's report of who holds it. @param page the number of this page.
   show({ hand_page: holder, page_hand: state }: Transport, page: number): void {
     if (!this.active) return;
     if (holder === page) this.held = true;
@@ -113,12 +113,12 @@ export class PageHand {
       this.say("Another page has the hand; switch it on here to take it back.");
     }
   }
-  /// The program is gone, and the hand with it.
+  /// The connection is lost, and the hand with it.
   lost(): void {
     if (this.active) this.end();
   }
 
-  /// @param why it ends, where nobody asked for that.
+  /// @param why shown if the user did not ask for the end.
   private end(why = ""): void {
     setText(this.why, why);
     this.active = this.held = false;
@@ -129,7 +129,7 @@ export class PageHand {
     this.view.array.setPlumb(null);
   }
 
-  /// @return whether the key is one of the hand's.
+  /// @return whether the key moves the hand.
   key(event: KeyboardEvent): boolean {
     if (!this.active) return false;
     if (event.key === "Escape") {
@@ -152,7 +152,7 @@ export class PageHand {
     return true;
   }
 
-  /// Sideways and away from the eye, however it looks.
+  /// Moves the hand sideways and away from the viewer, whatever the view.
   private drag(event: PointerEvent): void {
     const camera = this.view.eye.camera;
     const palm = new Vector3(...this.pose.palm_mm).divideScalar(1000);

@@ -1,19 +1,19 @@
-/// The page as one picture: the scene, the planes and the strips beside each other, with a caption under them.
+/// A screenshot of the page: the scene, the planes and the strips side by side, with a caption below.
 
 import { find } from "../dom";
 
 export interface PictureSource {
   canvas: HTMLCanvasElement;
-  /// draws the newest picture now, so that it can be read
+  /// draws the newest picture now, so that it can be read back
   render(): void;
-  /// title, then parts of text for the lines under the picture
+  /// the title, and the parts of the text below the picture
   caption(): { title: string; parts: string[] };
 }
 
 const kGap = 18, kLine = 20; // [pixels of the page]
 const kText = "13px system-ui, sans-serif";
 
-/// Parts of text in as many lines as their width needs.
+/// Breaks the parts of a text into lines that fit the width.
 export function wrapped(parts: string[], width: number, widthOf: (text: string) => number): string[] {
   const lines: string[] = [];
   for (const part of parts) {
@@ -24,7 +24,7 @@ export function wrapped(parts: string[], width: number, widthOf: (text: string) 
   return lines;
 }
 
-/// The texts of a part of the page as they look there, at `left` and `top` for what is at the corner of `frame`.
+/// Draws the texts of a part of the page as they look there, at `left` and `top` for the corner of `frame`.
 function drawTexts(context: CanvasRenderingContext2D, part: Element, frame: DOMRect, left: number, top: number): void {
   const texts = document.createTreeWalker(part, NodeFilter.SHOW_TEXT);
   const range = document.createRange();
@@ -42,7 +42,7 @@ function drawTexts(context: CanvasRenderingContext2D, part: Element, frame: DOMR
   context.textBaseline = "alphabetic";
 }
 
-/// All of the panels, also what they have scrolled out of sight. @param corner of the picture's part for them.
+/// Draws the whole panels, including parts that are scrolled out of sight. @param corner of their place in the picture.
 function drawPanels(context: CanvasRenderingContext2D, left: number, corner: number): void {
   const panels = find("panels"), side = panels.getBoundingClientRect(), top = corner + panels.scrollTop;
   for (const part of panels.querySelectorAll<HTMLElement>("canvas, .swatch")) {
@@ -64,7 +64,7 @@ function drawScene(context: CanvasRenderingContext2D, source: PictureSource, lef
   }
 }
 
-/// Every part of the page that shows the run, where it is beside the others.
+/// Draws every part of the page that shows the run, in the layout of the page.
 export function compose(source: PictureSource): HTMLCanvasElement {
   const style = getComputedStyle(document.documentElement);
   const colour = (name: string) => style.getPropertyValue(name).trim();

@@ -1,4 +1,4 @@
-/// The settings of the picture, which belong to this page alone.
+/// The settings of the picture, which affect this page only.
 
 import { kPictures, type Address, type PictureMode } from "../address";
 import { find, make, reducedMotion } from "../dom";
@@ -10,7 +10,7 @@ const kSlowest = [1, 2, 5, 10, 20, 50, 100];
 const kFieldNames: Record<FieldMode, string> = {
   target: "Target", rendered: "Reconstruction", difference: "Difference", none: "None",
 };
-const kThrough = 0.62; // opacity of a hand that is seen through
+const kThrough = 0.62; // opacity of a hand with "See through the hand"
 
 export class PictureSettings {
   field: FieldMode = "rendered";
@@ -18,7 +18,7 @@ export class PictureSettings {
   private readonly slow = find<HTMLInputElement>("slow-motion");
   private readonly picture = find<HTMLSelectElement>("picture-mode");
 
-  /// @param changed what is drawn differs from now on.
+  /// @param changed called when the picture has to be drawn differently.
   constructor(private readonly view: View, private readonly address: Address, private readonly changed: () => void) {
     const { skin } = address.state;
     if (kFieldModes.some((m) => m === skin)) this.field = skin as FieldMode;

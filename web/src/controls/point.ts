@@ -1,4 +1,4 @@
-/// Says in the picture what pressure is on the skin that somebody points at.
+/// Shows the pressure on the skin under the pointer, in the picture.
 
 import { cellWords, placeWords, say } from "../panels/hover";
 import { onPoint, type Place } from "../pointing";
@@ -14,12 +14,12 @@ export class Pointer {
     });
   }
 
-  /// Called when there is something new under a pointer that rests, too.
+  /// Also called when new data arrive under a resting pointer.
   update(moved = true): void {
     if (this.at === null) return void (moved && say([], 0, 0));
     const hit = this.view.skinAt(this.at.x, this.at.y);
     if (hit === null) {
-      // a hand that comes later is not what was tapped
+      // a hand that appears later was not tapped
       if (this.at.tapped) this.at = null;
       return say([], 0, 0);
     }

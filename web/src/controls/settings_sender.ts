@@ -1,8 +1,8 @@
-/// Sends settings at a pace that a run can follow: of several values of a control the newest.
+/// Sends settings at a rate that a run can follow; of several values of a control only the newest is sent.
 
 import type { Value } from "../messages";
 
-const kEvery = 50; // [ms] between messages at least
+const kEvery = 50; // shortest interval between messages [ms]
 
 export class SettingsSender {
   private readonly waiting = new Map<string, Value>();
@@ -12,12 +12,12 @@ export class SettingsSender {
   constructor(private readonly send: (id: string, value: Value) => void) {}
 
   set(id: string, value: Value): void {
-    this.waiting.delete(id); // so that the newest comes last
+    this.waiting.delete(id); // so that the newest control comes last
     this.waiting.set(id, value);
     this.timer ??= window.setTimeout(() => this.flush(), Math.max(0, this.sent + kEvery - performance.now()));
   }
 
-  /// Drops what waits: it was for a program that is gone.
+  /// Discards waiting settings: they were meant for a connection that is lost.
   forget(): void { this.waiting.clear(); }
 
   private flush(): void {

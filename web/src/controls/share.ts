@@ -1,4 +1,4 @@
-/// Takes the page's state along: as a link, a command line or a settings file; and takes it back to the run's start.
+/// Shares the page's state as a link, a command line or a settings file, and resets it to the run's start.
 
 import { askedSettings, inWords, type Address, type Asked } from "../address";
 import { find, make } from "../dom";
@@ -23,7 +23,7 @@ function listed(asked: Asked[]): string {
 
 export class Share {
   private readonly bar = find("asked");
-  private waits: Record<string, string>; // settings of the address, until somebody says what to do with them
+  private waits: Record<string, string>; // settings of the address, until the user applies or ignores them
 
   constructor(private readonly act: ShareActions, private readonly address: Address) {
     this.waits = { ...address.state.settings };
@@ -47,12 +47,12 @@ export class Share {
     find("reset").addEventListener("click", () => {
       const changed = (act.state()?.controls ?? []).filter((c) => inWords(c.value) !== inWords(c.default));
       for (const c of changed) act.set(c.id, c.default);
-      act.say(`Every setting ${changed.length > 0 ? "goes back to what the run began with" : "is as the run began"}.`);
+      act.say(`All settings are ${changed.length > 0 ? "reset" : "already equal"} to the run's start.`);
     });
   }
 
-  /// The program's state. Settings of a link are asked about once, and never taken without a click: a link may come
-  /// from anywhere. @return whether nothing is being asked.
+  /// Shows the program's state. Asks once about the settings of a link and applies them only after a click: a link may
+  /// come from anyone. @return whether nothing is being asked.
   show(state: State): boolean {
     const asked = askedSettings(state.controls, this.waits);
     if (asked.length === 0) {
@@ -85,8 +85,8 @@ export class Share {
       await navigator.clipboard.writeText(text);
       this.act.say(done);
     } catch {
-      // pages that are not on this machine may not write to the clipboard
-      this.act.say(`This browser lets the page copy nothing. Copy it from here: ${text}`);
+      // only pages of this machine may write to the clipboard
+      this.act.say(`This browser does not let the page copy. Copy it from here: ${text}`);
     }
   }
 }

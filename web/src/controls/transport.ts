@@ -1,4 +1,4 @@
-/// Play, pause, step, and the place in a recording.
+/// Play, pause, step, and the position in a recording.
 
 import { find, make, setText } from "../dom";
 import type { PageMessage, State } from "../messages";
@@ -13,7 +13,7 @@ export class Transport {
   private readonly place = find("place");
   private playing = true;
   private length = 0;
-  private held = 0; // until then the page's own place stands [ms]
+  private held = 0; // until then the position set here is shown [ms]
 
   constructor(private readonly send: (message: PageMessage) => void) {
     this.play.addEventListener("click", () => this.toggle());
@@ -31,7 +31,7 @@ export class Transport {
 
   show(state: State, page: number): void {
     const { playing, recording } = state.transport;
-    // a button that is being pressed stays as it is
+    // unchanged buttons stay, so that they can be pressed
     if (playing !== this.playing || this.play.childElementCount === 0) {
       const icon = make("span", { class: `icon ${playing ? "pause" : "play"}`, "aria-hidden": "true" });
       this.play.replaceChildren(icon, playing ? "Pause" : "Play");

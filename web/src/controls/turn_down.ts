@@ -1,4 +1,4 @@
-/// Says that the run does not keep its rates and what the program advises, with a button where one control does it.
+/// Shows that the run misses its rates and what the program advises, with a button if one setting helps.
 
 import { find, setText } from "../dom";
 import type { Advice, Value } from "../messages";
@@ -13,7 +13,7 @@ export class TurnDown {
     });
   }
 
-  /// @param sentence why the rates are missed; "" where they are held.
+  /// @param sentence why the rates are missed; "" while they are met.
   show(sentence: string, advice: Advice | null): void {
     this.offer = sentence === "" ? null : advice?.set ?? null;
     find("missed").hidden = sentence === "";

@@ -1,15 +1,15 @@
-/// Whether a held hand gets the stimulus that the scene is meant to be, and what to change where it does not.
+/// Shows whether a held hand receives the scene's intended stimulus, and what to change if it does not.
 
 import { find, setText } from "../dom";
 import type { Frame } from "../wire";
 
-const kLeast = 500; // a sentence stays so long, so that it can be read [ms]
+const kLeast = 500; // shortest time that a sentence stays, so that it can be read [ms]
 
 export class GateSign {
   private readonly root = find("gate");
-  private said = -Infinity; // when [ms]
+  private said = -Infinity; // time of the last change [ms]
 
-  /// @param now of the page's clock [ms].
+  /// @param now the page's clock [ms].
   show({ gate }: Frame, now: number): void {
     this.root.hidden = gate === null;
     if (gate === null) return;

@@ -1,8 +1,8 @@
-/// Numbers over time, and what a strip's axis makes of them.
+/// Numbers over time, and the axis of their strip.
 
 export const kLongest = 120; // [s]
 
-/// Values over time, those of more than two minutes ago dropped.
+/// Values over time. Those older than two minutes are dropped.
 export class History {
   readonly times: number[] = [];
   readonly values: number[][];
@@ -11,14 +11,14 @@ export class History {
   add(time: number, values: number[]): void {
     this.times.push(time);
     values.forEach((v, i) => this.values[i]!.push(v));
-    // in lumps, so that it costs little
+    // drops many at once, which is cheaper
     const old = this.times.findIndex((t) => t >= time - kLongest - 1);
     if (old < 64) return;
     this.times.splice(0, old);
     for (const row of this.values) row.splice(0, old);
   }
 
-  /// As it is now, for a strip that is frozen.
+  /// Copies the values, for a frozen strip.
   copy(): History {
     const made = new History(this.values.length);
     made.times.push(...this.times);
@@ -26,7 +26,7 @@ export class History {
     return made;
   }
 
-  /// Place of the sample nearest to a time; −1 without samples.
+  /// Index of the sample nearest to a time; −1 without samples.
   nearest(time: number): number {
     const after = this.after(time);
     if (after === 0 || (after < this.times.length && this.times[after]! - time < time - this.times[after - 1]!)) {
@@ -34,7 +34,7 @@ export class History {
     }
     return after - 1;
   }
-  /// Place of the first sample that is not before a time.
+  /// Index of the first sample at or after a time.
   after(time: number): number {
     let low = 0, high = this.times.length;
     while (low < high) {
@@ -48,7 +48,7 @@ export class History {
 
 const kRateOver = 1; // [s]
 
-/// By how much a count that only grows has grown in the last second, per second. A count that has fallen began anew.
+/// Growth of a counter during the last second, per second. A counter that falls has been reset.
 export class PerSecond {
   private readonly seen: { time: number; count: number }[] = [];
 
@@ -63,7 +63,7 @@ export class PerSecond {
   }
 }
 
-/// Times of the samples of which a value lies above the axis, and below it.
+/// Times of the samples with a value above the axis, and below it.
 export function beyond(times: number[], rows: number[][], top: number): { above: number[]; below: number[] } {
   return {
     above: times.filter((_, i) => rows.some((row) => row[i]! > top)),
@@ -73,7 +73,7 @@ export function beyond(times: number[], rows: number[][], top: number): { above:
 
 const kOutlying = 1.5; // times the 98th percentile
 
-/// The top of an axis on which the values are well seen: that of their 98th percentile where a few stick out.
+/// The top of an axis that fits the values; it follows their 98th percentile if a few are much larger.
 export function robustTop(values: ArrayLike<number>, atLeast: number): number {
   const sorted = Float64Array.from(values).filter(Number.isFinite).sort();
   if (sorted.length === 0) return atLeast;

@@ -1,4 +1,4 @@
-/// The meaning of the colours on the skin in the picture.
+/// The legend of the colours on the skin in the picture.
 
 import { kDifferenceTables, kFieldTable } from "../colours";
 import { find, make } from "../dom";

@@ -1,4 +1,4 @@
-/// Says over the picture and the planes that no hand is in sight, and what to do about it.
+/// Shows over the picture and the planes that no hand is in sight, and what to do about it.
 
 import { find, setText } from "../dom";
 import type { State } from "../messages";

@@ -14,7 +14,7 @@ function runWords({ sequence, run }: Frame): Record<(typeof kRun)[number], strin
   };
 }
 
-/// @param digits after the point; −1: six in all.
+/// @param digits after the decimal point; −1: six significant ones.
 function inDigits(value: number, digits: number): string {
   if (!Number.isFinite(value)) return "–";
   if (digits < 0) return String(Number(value.toPrecision(6)));

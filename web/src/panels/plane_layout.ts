@@ -1,21 +1,21 @@
-/// Where the cells of each hand's plane lie on a canvas, and what is under a place of it.
+/// Layout of the hands' planes on a canvas, and the cell at a position of it.
 
 import type { Patch } from "../wire";
 
 export interface Placed {
   patch: Patch;
-  top: number; // of the band of this hand [pixels]
+  top: number; // upper edge of this hand's band [pixels]
   height: number;
-  pixels: number; // a metre
-  x(p: number): number; // of a place in P [m]
+  pixels: number; // pixels per metre
+  x(p: number): number; // horizontal pixel of a position in P [m]
   y(p: number): number;
 }
 
-/// All hands in the same millimetres, one below the other.
+/// All hands at one scale, one below the other.
 export function layOut(field: Patch[], width: number, height: number): Placed[] {
   const band = height / Math.max(1, field.length);
   const wanted = (p: Patch) => Math.ceil((Math.max(p.rows, (p.cols * band) / width) * p.cell + 0.008) / 0.02) * 0.02;
-  const extent = Math.max(0.2, ...field.map(wanted)); // of a band [m]
+  const extent = Math.max(0.2, ...field.map(wanted)); // height of a band [m]
   const pixels = band / extent;
   return field.map((patch, k) => {
     const middleX = patch.centre[0] + ((patch.cols - 1) / 2) * patch.cell;
@@ -28,7 +28,7 @@ export function layOut(field: Patch[], width: number, height: number): Placed[] 
   });
 }
 
-/// Cell of a patch at a place in its plane; −1 outside, and where there is no skin.
+/// Cell of a patch at a position in its plane; −1 outside, and where there is no skin.
 export function cellAt(patch: Patch, x: number, y: number): number {
   const col = Math.round((x - patch.centre[0]) / patch.cell), row = Math.round((y - patch.centre[1]) / patch.cell);
   if (col < 0 || row < 0 || col >= patch.cols || row >= patch.rows) return -1;
@@ -39,7 +39,7 @@ export function cellAt(patch: Patch, x: number, y: number): number {
 export interface Under {
   patch: Patch;
   cell: number;
-  x: number; // in P [m]
+  x: number; // position in P [m]
   y: number;
 }
 
@@ -53,7 +53,7 @@ export function under(placed: Placed[], px: number, py: number): Under | null {
   return null;
 }
 
-/// The skin at a place of a plane, in D [m].
+/// Position in D of the skin at a position of the plane [m].
 export function overArray({ patch, cell, x, y }: Under): [number, number, number] {
   const height = patch.height[cell]! * patch.heightScale;
   const row = (i: number) => patch.pose[4 * i]! * x + patch.pose[4 * i + 1]! * y + patch.pose[4 * i + 2]! * height + patch.pose[4 * i + 3]!;

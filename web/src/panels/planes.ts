@@ -1,4 +1,4 @@
-/// The field of each hand flattened to its plane: target, reconstruction and their difference, in one scale, with the
+/// The fields of each hand in its plane: target, reconstruction and their difference, at one scale, with the
 /// paths.
 
 import type { Address } from "../address";
@@ -111,7 +111,7 @@ export class Planes {
     context.restore();
   }
 
-  /// Says what is under the pointer.
+  /// Describes the cell under the pointer.
   private point(pointer: Planes["pointer"]): void {
     if (pointer === null && this.pointer === null) return;
     this.pointer = pointer;
@@ -124,7 +124,7 @@ export class Planes {
     say([...cellWords(there.patch, there.cell), placeWords(...overArray(there))], pointer.x, pointer.y);
   }
 
-  /// The cells of a patch into this.image, the row of the largest y first.
+  /// Draws the cells of a patch into this.image, starting with the row of the largest y.
   private paint(patch: Patch, kind: Kind): void {
     const { rows, cols } = patch;
     if (this.image.width !== cols || this.image.height !== rows) [this.image.width, this.image.height] = [cols, rows];
@@ -162,7 +162,7 @@ export class Planes {
     const style = getComputedStyle(document.documentElement);
     const left = 7 * ratio, bottom = height - 7 * ratio;
     context.font = `600 ${11 * ratio}px system-ui, sans-serif`;
-    // with an edge of the ground's colour, so that it can be read over a hand
+    // outlined in the background's colour, so that it is legible over a hand
     context.strokeStyle = style.getPropertyValue("--raised").trim();
     context.lineWidth = 3 * ratio;
     context.strokeText("50 mm", left, bottom - 6 * ratio);

@@ -1,13 +1,13 @@
-/// Whether the run keeps its rates, and what keeps it from that, as a sentence.
+/// Watches whether the run meets its rates, and states the reason if it does not.
 
 import type { Rates } from "../messages";
 import { fixed } from "../text";
 import { numberOf, type Frame } from "../wire";
 
-const kHeld = 0.98; // share of a rate that counts as kept
-const kOver = 3; // [s] over which rates and times are averaged
-const kFull = 0.85; // share of the time there is, above which the work itself is too much
-const kSure = 2; // [s] for which they must be missed before anything is said
+const kHeld = 0.98; // fraction of a rate that counts as met
+const kOver = 3; // time over which rates and durations are averaged [s]
+const kFull = 0.85; // fraction of the available time above which the work itself is too much
+const kSure = 2; // time for which rates must be missed before it is reported [s]
 
 interface Sample {
   time: number; // [s]
@@ -18,16 +18,16 @@ interface Sample {
 type Stage = "track" | "hand" | "fluid" | "contact" | "plan" | "lift";
 const kNames: Record<Stage, string> = {
   track: "the tracking", hand: "the hand on its grid", fluid: "the smoke", contact: "the pressure on the skin",
-  plan: "the planner", lift: "the way of the paths onto the skin",
+  plan: "the planner", lift: "lifting the paths onto the skin",
 };
 
 export class RateWatch {
   private samples: Sample[] = [];
   private missedSince: number | null = null;
 
-  /// @param now of the page's clock [s].
+  /// @param now the page's clock [s].
   add(frame: Frame, now: number): void {
-    // rates are of the last second: those of a pause, and right after it, mean nothing
+    // rates cover the last second, so they mean nothing in a pause and right after it
     if (frame.run.paused) return this.forget();
     const ms = (name: Parameters<typeof numberOf>[1]) => {
       const value = numberOf(frame, name);
@@ -52,8 +52,8 @@ export class RateWatch {
     return this.samples.reduce((sum, s) => sum + of(s), 0) / Math.max(1, this.samples.length);
   }
 
-  /// Why the rates are not kept; "" where they are, or where it cannot be said yet.
-  /// @param drawing the processor draws this page's picture.
+  /// Why the rates are missed; "" if they are met, or if it is too early to tell.
+  /// @param drawing whether the processor draws this page's picture.
   sentence(rates: Rates, now: number, drawing: boolean): string {
     const first = this.samples[0];
     const known = first !== undefined && first.time < now - 0.7 * kOver;
@@ -69,10 +69,10 @@ export class RateWatch {
       `because ${this.reason(rates, drawing)}.`;
   }
 
-  /// The work of the two threads, one stage after the other, with the time for it.
+  /// The stages of the two threads, which run one after the other, and the time available.
   private work(rates: Rates): { name: "a step" | "a plan"; sum: number; room: number; parts: [Stage, number][] }[] {
     const stage = (name: Stage) => this.mean((s) => s.stages[name]);
-    const perStep = rates.plan_hz / rates.world_hz; // plans
+    const perStep = rates.plan_hz / rates.world_hz; // plans per step
     const step: [Stage, number][] = [
       ["track", stage("track")], ["hand", stage("hand")], ["fluid", stage("fluid")],
       ["contact", perStep * stage("contact")],

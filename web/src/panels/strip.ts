@@ -1,4 +1,4 @@
-/// One strip: a few numbers over the last while.
+/// One strip: a few numbers over time.
 
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
@@ -8,29 +8,29 @@ import type { Frame } from "../wire";
 import { beyond, History, PerSecond, robustTop } from "./history";
 import type { StripSpec } from "./strip_specs";
 
-/// The state that all strips share at a moment.
+/// The state that all strips share.
 export interface StripsView {
   span: number; // [s]
-  now: number; // the right end [s of the page's clock]
-  at: number | null; // where the pointer is [s before `now`, at most 0]
+  now: number; // the right end [s, page's clock]
+  at: number | null; // the pointer's time [s before `now`, at most 0]
 }
 
 const kBetter = { higher: "↑ better", lower: "↓ better" } as const;
-const kIncrements: Record<number, number[]> = { 10: [2, 5], 30: [10, 15], 120: [30, 60] }; // of the time's axis [s]
-const kMarkGap = 4; // pixels between marks of what is cut off, at least
+const kIncrements: Record<number, number[]> = { 10: [2, 5], 30: [10, 15], 120: [30, 60] }; // of the time axis [s]
+const kMarkGap = 4; // smallest distance between marks of clipped values [pixels]
 
 export class Strip {
   readonly plot: uPlot;
   private readonly history: History;
-  private kept: History | null = null; // what is shown while frozen
+  private kept: History | null = null; // the values shown while frozen
   private readonly rates: (PerSecond | null)[];
   private readonly readings: HTMLElement[];
   private readonly host = make("div", { class: "plot" });
   private view: StripsView = { span: 30, now: 0, at: null };
   private top = 1;
-  private cut = beyond([], [], 0); // times of samples that the axis cuts off [s before now]
+  private cut = beyond([], [], 0); // times of samples outside the axis [s before now]
 
-  /// @param last whether it stands at the foot, where the time is written
+  /// @param last whether it is the lowest strip, which shows the time axis
   constructor(readonly spec: StripSpec, private readonly last: boolean, private readonly dark: () => boolean) {
     this.history = new History(spec.series.length);
     this.rates = spec.series.map((s) => (s.counts ? new PerSecond() : null));
@@ -48,7 +48,7 @@ export class Strip {
     this.plot = new uPlot(this.options(), [[], ...spec.series.map(() => [])], this.host);
   }
 
-  /// Stacked series are drawn from the tallest sum down, so that each covers the foot of the one before.
+  /// Stacked series are drawn from the largest sum down, so that each covers the lower part of the one before.
   private get order(): number[] {
     const all = [...this.spec.series.keys()];
     return this.spec.stacked ? all.reverse() : all;
@@ -62,7 +62,7 @@ export class Strip {
       stroke: () => style("--faint"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false },
       font: "11px system-ui, sans-serif",
     };
-    // the left end has no label: it would stand on the axis's 0
+    // the left end has no label: it would overlap the 0 of the other axis
     const label = (t: number) => (t === 0 ? "now" : t <= -this.view.span ? "" : `−${-t} s`);
     return {
       width: 300, height: 60, pxAlign: 1, legend: { show: false }, cursor: { show: false },
@@ -91,7 +91,7 @@ export class Strip {
     };
   }
 
-  /// Marks what is cut off at the top and at the foot, and where the pointer is.
+  /// Marks values clipped at the top and at the bottom, and the pointer's time.
   private mark(plot: uPlot, cutColour: string, lineColour: string): void {
     const { ctx, bbox } = plot;
     const ratio = window.devicePixelRatio || 1;
@@ -106,8 +106,8 @@ export class Strip {
     ctx.restore();
   }
 
-  /// Draws triangles that point out of the plot at an edge of it.
-  /// @param out a pixel of the page, negative where out is upwards.
+  /// Draws triangles that point out of the plot at one of its edges.
+  /// @param out one page pixel outwards; negative for upwards.
   private triangles({ ctx, valToPos }: uPlot, times: number[], edge: number, out: number): void {
     const pixel = Math.abs(out);
     let before = -Infinity;
@@ -127,10 +127,10 @@ export class Strip {
     this.history.add(time, this.spec.series.map((s, i) => this.rates[i]?.add(time, s.value(frame)) ?? s.value(frame)));
   }
 
-  /// From now on it shows what it has, or goes on.
+  /// Freezes the strip with its present values, or resumes it.
   freeze(frozen: boolean): void { this.kept = frozen ? this.history.copy() : null; }
 
-  /// The time at a place of the page, in seconds before the right end; null beside the strip.
+  /// The time at a position of the page, in seconds before the right end; null outside the strip.
   timeAt(clientX: number, clientY: number): number | null {
     const box = this.plot.over.getBoundingClientRect();
     const inside = clientX >= box.left && clientX <= box.right && clientY >= box.top && clientY <= box.bottom;
@@ -162,7 +162,7 @@ export class Strip {
     this.cut = beyond(times, rows, this.top);
   }
 
-  /// Writes the newest values, or those under the pointer.
+  /// Shows the newest values, or those at the pointer.
   private read(history: History): void {
     const newest = this.view.at === null && this.kept === null;
     const at = newest ? history.times.length - 1 : history.nearest(this.view.now + (this.view.at ?? 0));

@@ -1,4 +1,4 @@
-/// The content of each strip.
+/// The contents of each strip.
 
 import { numberOf, type Frame, type NumberName } from "../wire";
 
@@ -7,7 +7,7 @@ export type Colour = [light: string, dark: string];
 export interface Series {
   label: string;
   value: (frame: Frame) => number;
-  /// the value counts from the start of the run; how fast it grows is shown
+  /// the value is a counter since the start of the run; its rate is shown
   counts?: boolean;
   colour: Colour;
   digits?: number;
@@ -19,8 +19,8 @@ export interface StripSpec {
   unit: string;
   better?: "higher" | "lower";
   stacked?: boolean;
-  atLeast: number; // the top of the axis is never lower
-  atMost?: number; // nor higher
+  atLeast: number; // lower limit of the axis's top
+  atMost?: number; // upper limit of the axis's top
   series: Series[];
 }
 

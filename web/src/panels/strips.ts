@@ -1,4 +1,4 @@
-/// The last while of the program's numbers, as strips that share their time: it can be zoomed, frozen and pointed at.
+/// The program's numbers over time, as strips with a common time axis that can be zoomed, frozen and inspected.
 
 import { kSpans, type Address } from "../address";
 import { find, make, setText } from "../dom";
@@ -14,7 +14,7 @@ export class Strips {
   private frozenAt: number | null = null;
   private at: number | null = null;
   private span: number;
-  private stale = true; // something other than time has changed
+  private stale = true; // something other than the time has changed
 
   constructor(private readonly address: Address) {
     this.span = address.state.span ?? 30;
@@ -29,7 +29,7 @@ export class Strips {
 
   add(frame: Frame, time: number): void { for (const s of this.strips) s.add(frame, time); }
 
-  /// @param now of the page's clock [s]. @param due whether time alone is a reason to draw them again.
+  /// @param now the page's clock [s]. @param due whether to redraw them for the time alone.
   draw(now: number, due: boolean): void {
     if (!this.stale && (!due || this.frozenAt !== null)) return;
     this.stale = false;

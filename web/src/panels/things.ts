@@ -1,4 +1,4 @@
-/// The things in the picture in three dimensions: a swatch and a name for each thing that is drawn now.
+/// The list of what the three-dimensional picture shows: a swatch and a name for each.
 
 import { find, make, setText } from "../dom";
 import type { Hello } from "../messages";

@@ -1,4 +1,4 @@
-/// The numbers that are shown large.
+/// The numbers shown in large type.
 
 import { fixed } from "../text";
 import { numberOf, type Frame, type NumberName } from "../wire";
@@ -16,12 +16,12 @@ export const kTiles: Tile[] = [
     parts: [{ name: "latency_p50_ms", digits: 1, after: "·" }, { name: "latency_p99_ms", digits: 1, after: "ms" }],
   },
   {
-    label: "Correlation", help: "Of what is played, by Eq. (1) with sigma_mm, with the target; 1 is best",
+    label: "Correlation", help: "Of the played field with the target, by Eq. (1) with sigma_mm; 1 is best",
     parts: [{ name: "correlation", digits: 3 }],
   },
   {
     label: "RMSE",
-    help: "Of what is played, by Eq. (1) with sigma_mm, as a share of the largest target pressure; 0 is best",
+    help: "Of the played field, by Eq. (1) with sigma_mm, relative to the largest target pressure; 0 is best",
     parts: [{ name: "rmse", digits: 3 }],
   },
   {
@@ -29,12 +29,12 @@ export const kTiles: Tile[] = [
     parts: [{ name: "max_target_pa", digits: 2, after: "Pa" }],
   },
   {
-    label: "Missed", help: "Blocks of samples that the array had to do without, since the start",
+    label: "Missed", help: "Dropouts since the start: blocks of samples that came too late to be played",
     parts: [{ name: "missed_blocks", digits: 0 }],
   },
 ];
 
-/// Them as pieces of text.
+/// The tiles as text.
 export function tileWords(frame: Frame): string[] {
   const part = (p: Tile["parts"][number]) => `${fixed(numberOf(frame, p.name), p.digits)} ${p.after ?? ""}`.trim();
   return kTiles.map((t) => `${t.label} ${t.parts.map(part).join(" ")}`);

@@ -1,4 +1,4 @@
-/// The page's words about the run.
+/// The page's texts about the run.
 
 import type { State } from "../messages";
 import { fixed } from "../text";
@@ -9,7 +9,7 @@ export interface Output {
   why: string;
 }
 
-const kAudible = 0.005; // intensity of the strongest focal point, 0 to 1
+const kAudible = 0.005; // intensity of the strongest focal point, 0 to 1, above which the output counts as on
 
 /// Returns the state of the output in a frame.
 export function outputOf(frame: Frame): Output {
@@ -18,12 +18,12 @@ export function outputOf(frame: Frame): Output {
   if (run.hot) return { state: "muted", why: "the array is too hot" };
   if (run.calibrating) return { state: "muted", why: "for the calibration" };
   const intensity = numberOf(frame, "intensity");
-  // a device that cannot be listened to plays what is planned
+  // for a device that does not report its output: it plays the plan
   const sounds = Number.isFinite(intensity) ? intensity > kAudible : run.handInSight && !run.paused && !run.fading;
   if (sounds) return { state: "on", why: "" };
   if (run.paused) return { state: "off", why: "paused" };
   if (!run.handInSight) return { state: "off", why: "no hand in sight" };
-  if (run.fading) return { state: "off", why: "no new plan comes" };
+  if (run.fading) return { state: "off", why: "no new plan" };
   return { state: "off", why: "no pressure on the hand" };
 }
 
@@ -31,24 +31,24 @@ const kSources: Record<string, string> = {
   scripted: "scripted hand", recording: "recorded hand", leap: "tracked hand (Leap)", openxr: "tracked hand (OpenXR)",
 };
 
-/// Why the page's hand was released without being asked to.
+/// Why the program released the page's hand.
 const kReleased: Record<State["transport"]["page_hand"], string> = {
   free: "", held: "", late: "; the page that held the hand is late", hidden: "; the page that held the hand is hidden",
 };
 
-/// Where the hands come from, for the page with this number.
+/// Describes where the hands come from, for the page with this number.
 export function sourceOf({ source, hand_page: holder, page_hand: hand }: State["transport"], page: number): string {
   if (source !== "page") return (kSources[source] ?? source) + kReleased[hand];
   if (holder === null) return "no page’s hand" + kReleased[hand];
   return holder === page ? "hand from this page" : "hand from another page";
 }
 
-/// Returns the place in a recording [s].
+/// Returns the position in a recording [s] as text.
 export function placeOf(at: number, length: number): string {
   return `${fixed(at, 1)} / ${fixed(length, 1)} s · repeats`;
 }
 
-/// Returns advice, by the source of the hands.
+/// Returns what to do without a hand, depending on its source.
 export function advice(state: State | null): string {
   if (state === null) return "";
   const { tracker, transport } = state;

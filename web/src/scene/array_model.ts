@@ -1,4 +1,4 @@
-/// The array, with every transducer where it is; the box of the smoke; marks to touch for a calibration; where the page's hand is over.
+/// The array with all transducers, the box of the smoke, the marks for calibration, and the point below the page's hand.
 
 import {
   BoxGeometry, BufferGeometry, CircleGeometry, Color, CylinderGeometry, EdgesGeometry, Float32BufferAttribute, Group, InstancedMesh, Line, LineBasicMaterial, LineSegments,
@@ -40,11 +40,11 @@ export class ArrayModel {
     this.placeBox(new Vector3(...origin).divideScalar(1000), edge / 1000);
   }
 
-  /// The box of the smoke may follow a hand. @param corner the lowest of each coordinate [m].  @param edge [m].
+  /// Moves the box, which may follow a hand. @param corner its smallest coordinates [m].  @param edge its edge [m].
   placeBox(corner: Vector3, edge: number): void { this.box.position.copy(corner).addScalar(edge / 2); }
 
   private addTransducers(at: Vector3[]): void {
-    // as wide as their distance allows, at most the 10 mm that they are
+    // as wide as their spacing allows, at most their true 10 mm
     let spacing = 0.0106;
     for (const p of at.slice(1)) spacing = Math.min(spacing, p.distanceTo(at[0]!));
     const radius = 0.465 * spacing, tall = 0.005;
@@ -86,7 +86,7 @@ export class ArrayModel {
     });
   }
 
-  /// Shows what is straight under the palm of the page's hand, or nothing.
+  /// Marks the point straight below the palm of the page's hand, or none.
   setPlumb(palm: Vector3 | null): void {
     this.plumb.visible = palm !== null;
     if (palm === null) return;

@@ -1,10 +1,10 @@
-/// The eye: it goes round a point on a sphere, by mouse, touch and keyboard; z is up.
+/// The camera. It orbits a point, controlled by mouse, touch and keyboard; z is up.
 
 import { MathUtils, PerspectiveCamera, Vector3 } from "three";
 import { entryOf } from "../keyboard";
 
 export interface Place {
-  azimuth: number; // [rad], 0 looks along +y
+  azimuth: number; // [rad]; at 0 the camera looks along +y
   elevation: number; // [rad]
   distance: number; // [m]
   target: Vector3;
@@ -17,7 +17,7 @@ interface NamedView {
   azimuth: number; // [degrees]
   elevation: number;
   distance: number; // [m]
-  z: number; // of what it looks at [m]
+  z: number; // height of the point it looks at [m]
 }
 const kHome: NamedView = { id: "home", label: "Oblique", azimuth: -32, elevation: 38, distance: 0.7, z: 0.125 };
 export const kViews: NamedView[] = [
@@ -32,9 +32,9 @@ export class OrbitCamera {
   readonly camera = new PerspectiveCamera(34, 1, 0.02, 6);
   private wanted: Place;
   private now: Place;
-  /// whether the eye glides to where it is sent
+  /// whether the camera glides to a new view
   smooth = true;
-  /// when true, the primary button and single touches are somebody else's
+  /// when true, the primary button and single touches belong to the page's hand
   primaryTaken = false;
   private readonly pointers = new Map<number, { x: number; y: number; button: number }>();
 
@@ -56,7 +56,7 @@ export class OrbitCamera {
   }
   go(view: string): void { this.wanted = this.placeOf(view); }
 
-  /// Where it goes: azimuth, elevation [degrees], distance, x, y, z of what it looks at [mm]; undefined at home.
+  /// The view it moves to: azimuth, elevation [degrees], distance and target x, y, z [mm]; undefined for the home view.
   get place(): number[] | undefined {
     const numbers = ({ azimuth, elevation, distance, target }: Place) =>
       [azimuth / degrees, elevation / degrees, 1000 * distance, ...target.toArray().map((v) => 1000 * v)];
@@ -80,7 +80,7 @@ export class OrbitCamera {
     this.wanted.elevation = MathUtils.clamp(this.wanted.elevation + elevation, -89 * degrees, 89 * degrees);
   }
   zoom(factor: number): void { this.wanted.distance = MathUtils.clamp(this.wanted.distance * factor, 0.15, 2.5); }
-  /// By shares of the height of the picture.
+  /// Shifts the view by fractions of the picture's height.
   pan(right: number, up: number): void {
     const scale = 2 * this.wanted.distance * Math.tan((this.camera.fov * degrees) / 2);
     const axis = (column: number) => new Vector3().setFromMatrixColumn(this.camera.matrixWorld, column);
@@ -99,7 +99,7 @@ export class OrbitCamera {
     const others = [...this.pointers].filter(([id]) => id !== event.pointerId).map(([, p]) => p);
     const height = this.element.clientHeight || 1;
     if (others.length > 0) {
-      // two fingers: apart is nearer, together they push
+      // two fingers: zoom by their distance, shift by their common motion
       const other = others[0]!;
       const before = Math.hypot(pointer.x - other.x, pointer.y - other.y);
       const after = Math.hypot(event.clientX - other.x, event.clientY - other.y);
@@ -116,7 +116,7 @@ export class OrbitCamera {
     pointer.y = event.clientY;
   }
 
-  /// @return whether the key is one of the eye's.
+  /// @return whether the key moves the camera.
   key(event: KeyboardEvent): boolean {
     const step = event.shiftKey ? 0.04 : 0.1;
     const nearer = () => this.zoom(0.9), home = () => this.go("home");
@@ -129,7 +129,7 @@ export class OrbitCamera {
     return act !== undefined;
   }
 
-  /// Goes on by dt [s]. @return whether the eye moves.
+  /// Advances the motion by dt [s]. @return whether the camera moved.
   update(dt: number, aspect: number): boolean {
     const share = this.smooth ? 1 - Math.exp(-dt / 0.07) : 1;
     const go = (from: number, to: number) => from + share * (to - from);
@@ -140,7 +140,7 @@ export class OrbitCamera {
     this.now.distance = go(this.now.distance, this.wanted.distance);
     this.now.target.lerp(this.wanted.target, share);
     const { azimuth, elevation, distance, target } = this.now;
-    // a narrow picture stands further off, so that the box stays in it
+    // a narrow picture is seen from further away, so that the box fits
     const far = distance * Math.max(1, 0.95 / aspect);
     this.camera.position.set(
       target.x + far * Math.cos(elevation) * Math.sin(azimuth),

@@ -18,7 +18,7 @@ function colourTexture(table: Uint8ClampedArray): DataTexture {
 
 const half = DataUtils.toHalfFloat.bind(DataUtils);
 
-/// Target, rendered and height are multiplied by whether there is skin, so that interpolation at an edge can divide it out.
+/// Target, rendered and height are premultiplied by the skin mask, so that interpolation at an edge can divide by it.
 function fill(texture: DataTexture, patch: Patch): DataTexture {
   const cells = patch.rows * patch.cols;
   let map = texture;
@@ -84,7 +84,7 @@ export class FieldMaps {
   setDark(dark: boolean): void { this.uniforms.differenceColours.value = dark ? this.difference.dark : this.difference.light; }
 }
 
-/// vec4 fieldColour(position in D, normal): colour of the field there, and how much of it.
+/// vec4 fieldColour(position in D, normal): the field's colour there, and its opacity.
 export const kFieldShader = /* glsl */ `
 uniform sampler2D fieldMap0, fieldMap1, fieldColours, differenceColours;
 uniform mat4 X_PD[2];
@@ -105,7 +105,7 @@ vec4 fieldOf(sampler2D map, mat4 X, vec4 grid, vec2 size, vec3 p, vec3 n) {
   float share = smoothstep(0.3, 0.6, cell.a) * smoothstep(0.016, 0.009, away) * smoothstep(-0.15, 0.2, facing);
   float target = value.r * grid.w / fieldMax, rendered = value.g * grid.w / fieldMax;
   float t = fieldMode == 3 ? 0.5 + 0.5 * (rendered - target) : fieldMode == 2 ? rendered : target;
-  // skin stays skin where there is next to nothing
+  // where the pressure is close to zero the skin shows
   share *= fieldMode == 3 ? smoothstep(0.005, 0.04, abs(rendered - target)) : smoothstep(0.01, 0.07, t);
   vec2 at = vec2((clamp(t, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5);
   return vec4(fieldMode == 3 ? texture(differenceColours, at).rgb : texture(fieldColours, at).rgb, share);

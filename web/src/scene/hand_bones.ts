@@ -1,4 +1,4 @@
-/// A hand at rest, open and flat, from the lengths of a tracked hand's bones: the pose in which its skin is made.
+/// An open, flat hand with the bone lengths of a tracked hand: the rest pose in which its skin is built.
 
 import { Matrix4, Quaternion, Vector3 } from "three";
 import { kJoints, type Hand } from "../wire";
@@ -8,8 +8,8 @@ export const kFingers = [6, 11, 16, 21]; // the joints of their metacarpals: ind
 
 export interface RestHand {
   side: "left" | "right";
-  position: Vector3[]; // of the joints, in the palm's frame [m]
-  frame: Matrix4[]; // of the joints: −z along the bone, +y dorsal
+  position: Vector3[]; // joints, in the palm's frame [m]
+  frame: Matrix4[]; // joint frames: −z along the bone, +y dorsal
   radius: number[]; // [m]
 }
 
@@ -21,7 +21,7 @@ export function jointFrame(hand: Hand, joint: number, out = new Matrix4()): Matr
   return out.compose(jointPosition(hand, joint), q, new Vector3(1, 1, 1));
 }
 
-/// −z towards `along`, +y as near to `dorsal` as can be.
+/// Returns a frame with −z along `along`, and +y as close to `dorsal` as possible.
 function boneFrame(at: Vector3, along: Vector3, dorsal: Vector3): Matrix4 {
   const z = along.clone().normalize().negate();
   const x = new Vector3().crossVectors(dorsal, z).normalize();
@@ -35,7 +35,7 @@ export function boneLengths(hand: Hand): number[] {
   return lengths;
 }
 
-/// From the wrist to the tip of the middle finger along its joints, however it is bent [mm].
+/// Length along the joints from the wrist to the tip of the middle finger, whatever the pose [mm].
 export function handLength(hand: Hand): number {
   const joints = [kWrist, 11, 12, 13, 14, 15];
   let length = 0;
@@ -64,7 +64,7 @@ export function restHand(hand: Hand): RestHand {
     frame[first + bones] = boneFrame(position[first + bones]!, direction, dorsal);
   };
 
-  // the palm is taken as it is; fingers go on along their metacarpals, fanned out so that they stay apart
+  // the palm keeps its shape; the fingers extend their metacarpals, fanned out to stay apart
   const up = new Vector3(0, 1, 0);
   const fan = [5, 0.5, -3.5, -8];
   kFingers.forEach((base, f) => {
@@ -73,7 +73,7 @@ export function restHand(hand: Hand): RestHand {
     along.applyAxisAngle(up, ((fan[f] ?? 0) * mirror * Math.PI) / 180);
     layStraight(base + 1, 3, along, up);
   });
-  // the thumb stands off the palm
+  // the thumb is abducted
   layStraight(kThumb, 3, new Vector3(-0.66 * mirror, -0.26, -0.72), new Vector3(-0.7 * mirror, 0.35, 0.6));
   return { side: hand.side, position, frame, radius };
 }

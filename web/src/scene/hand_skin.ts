@@ -1,10 +1,10 @@
-/// The signed distance to the skin of a hand at rest: round cones along the fingers and flesh across the palm, as the program
-/// models it, (H12) of docs/design/hands.md, joined smoothly.
+/// The signed distance to the skin of a hand at rest: smoothly blended round cones along the fingers and flesh across the
+/// palm, the model of the program, (H12) of docs/design/hands.md.
 
 import { Vector3 } from "three";
 import { kFingers, kPalm, kThumb, kWrist, type RestHand } from "./hand_bones";
 
-/// A straight piece of flesh that a joint carries.
+/// A straight piece of flesh that moves with a joint.
 export interface Bone {
   joint: number;
   chain: number; // 0–3 the fingers, 4 the thumb, 5 the palm
@@ -14,23 +14,23 @@ export interface Bone {
   rb: number;
 }
 
-// over which parts are joined smoothly [m]
+// blending widths [m]
 const kPalmBlend = 0.005, kFingerBlend = 0.002, kRootBlend = 0.006;
 
 type Corner = { p: Vector3; r: number };
 
-/// Smaller of two distances, rounded over `k` where they meet.
+/// Smaller of two distances, smoothed over `k` where they meet.
 function smoothMin(a: number, b: number, k: number): number {
   const h = Math.max(k - Math.abs(a - b), 0) / k;
   return Math.min(a, b) - (h * h * k) / 4;
 }
 
-/// Several times as fast as Math.hypot.
+/// Several times faster than Math.hypot.
 function length(x: number, y: number, z: number): number {
   return Math.sqrt(x * x + y * y + z * z);
 }
 
-/// A segment whose radius goes linearly from end to end.
+/// Distance to a segment whose radius varies linearly.
 export function boneDistance(bone: Bone, x: number, y: number, z: number): number {
   const { a, b, ra, rb } = bone;
   const dx = b.x - a.x, dy = b.y - a.y, dz = b.z - a.z;
@@ -39,7 +39,7 @@ export function boneDistance(bone: Bone, x: number, y: number, z: number): numbe
   return length(px - u * dx, py - u * dy, pz - u * dz) - (ra + u * (rb - ra));
 }
 
-/// A sphere around some corners.
+/// A sphere that encloses some corners.
 class Bounds {
   private readonly middle = new Vector3();
   private readonly reach: number;
@@ -52,7 +52,7 @@ class Bounds {
   }
 }
 
-/// A triangle whose thickness goes linearly from corner to corner.
+/// A triangle whose thickness varies linearly.
 class Flesh {
   private readonly ab: Vector3;
   private readonly ac: Vector3;
@@ -75,7 +75,7 @@ class Flesh {
     this.bounds = new Bounds([a, b, c]);
   }
 
-  /// No more than the distance.
+  /// A lower bound of the distance.
   atLeast(x: number, y: number, z: number): number { return this.bounds.atLeast(x, y, z); }
 
   distance(x: number, y: number, z: number): number {
@@ -118,7 +118,7 @@ export class HandSkin {
     bone(kThumb, 5, corner(kThumb, 0.95), corner(kThumb + 1, 0.75));
     bone(kWrist, 5, corner(kWrist), corner(kFingers[1]!, 0.85));
 
-    // the palm, the ball of the thumb, the web beside it, the wrist
+    // the palm, the ball of the thumb, the web next to it, the wrist
     const base = kFingers.map((j) => corner(j, 0.85));
     const knuckle = kFingers.map((j) => corner(j + 1, 0.8));
     const add = (a: Corner, b: Corner, c: Corner) => this.flesh.push(new Flesh(a, b, c));
@@ -141,7 +141,7 @@ export class HandSkin {
   }
 
   distance(x: number, y: number, z: number): number {
-    // what is too far off to be blended in is not looked at
+    // parts too far away to be blended in are skipped
     let palm = 1;
     for (const f of this.flesh) {
       if (f.atLeast(x, y, z) < palm + kPalmBlend) palm = smoothMin(palm, f.distance(x, y, z), kPalmBlend);
@@ -156,7 +156,7 @@ export class HandSkin {
     return all;
   }
 
-  /// Joints that carry the skin at a point, and how much each does: the nearest bone, and those that it is joined to.
+  /// The joints that move the skin at a point, with their weights: those of the nearest bone and of its neighbours.
   weights(x: number, y: number, z: number): { joints: number[]; weights: number[] } {
     const near = this.bones.map((b) => ({ bone: b, d: boneDistance(b, x, y, z) })).sort((p, q) => p.d - q.d);
     const first = near[0]!;

@@ -1,4 +1,4 @@
-/// The hands, as smooth skin that follows the 26 joints, with the field on it.
+/// The hands as smooth skin on the 26 joints, coloured by the field.
 
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, FrontSide, GreaterDepth, Group, Matrix4, Mesh, ShaderMaterial } from "three";
 import { kJoints, type Hand } from "../wire";
@@ -7,7 +7,7 @@ import { boneLengths, jointFrame, restHand } from "./hand_bones";
 import { HandSkin } from "./hand_skin";
 import { surfaceNets, type Surface } from "./surface_nets";
 
-const kStep = 0.0032; // of the grid in which skin is made [m]
+const kStep = 0.0032; // grid step of the skin's surface [m]
 
 const kVertexShader = /* glsl */ `
 varying vec3 p_D, normal_D;
@@ -27,7 +27,7 @@ void main() {
   vec3 view = normalize(cameraPosition - p_D);
   vec4 field = fieldColour(p_D, n);
   if (fieldOnly > 0.0) {
-    // what lies on the far side shows through
+    // the far side shines through
     gl_FragColor = vec4(field.rgb * field.a, field.a) * fieldOnly;
     return;
   }
@@ -39,13 +39,13 @@ void main() {
   vec3 h = normalize(key + view);
   float gloss = 0.10 * pow(max(0.0, dot(n, h)), 28.0);
   vec3 colour = mix(shadeColour, skinColour, 0.18 + 0.62 * lit + 0.26 * filled) + gloss + rimColour * rim;
-  // the field keeps its own colours, which the scale explains
+  // the field keeps its own colours, which match the colour scale
   colour = mix(colour, field.rgb * (0.9 + 0.1 * lit), field.a);
   float alpha = mix(opacity, max(opacity, 0.97), max(field.a, rim));
   gl_FragColor = vec4(colour * alpha, alpha);
 }`;
 
-/// Tracked lengths waver; skin is made anew only when they differ by more than this [m].
+/// Tracked lengths fluctuate; the skin is rebuilt only if they differ by more than this [m].
 const kLengthTolerance = 0.002;
 
 class HandFigure {
@@ -53,7 +53,7 @@ class HandFigure {
   readonly through: Mesh;
   private lengths: number[] = [];
   private side = "";
-  // the skin in the pose in which it was made, and the four joints that carry each of its vertices
+  // the skin in the rest pose, and the four joints that move each vertex
   private rest: Surface = { positions: new Float32Array(0), normals: new Float32Array(0), indices: new Uint32Array(0) };
   private joints = new Uint8Array(0);
   private weights = new Float32Array(0);
@@ -85,7 +85,7 @@ class HandFigure {
     this.pose(hand);
   }
 
-  /// Makes the skin anew, in the rest pose.
+  /// Rebuilds the skin in the rest pose.
   private grow(hand: Hand): void {
     const rest = restHand(hand);
     const skin = new HandSkin(rest);
@@ -107,7 +107,7 @@ class HandFigure {
     this.mesh.geometry = this.through.geometry = geometry;
   }
 
-  /// Carries the skin along with the joints: a vertex goes where its joints, each by its weight, take it.
+  /// Moves each vertex with its joints, by their weights (linear blend skinning).
   private pose(hand: Hand): void {
     const matrix = new Matrix4();
     this.toJoint.forEach((inverse, j) => jointFrame(hand, j, matrix).multiply(inverse).toArray(this.carry, 16 * j));

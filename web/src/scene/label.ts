@@ -1,17 +1,17 @@
-/// A piece of text that stands at a place of the scene.
+/// A text at a position of the scene.
 
 import type { Vector3 } from "three";
 
 export interface Label {
   text: string;
-  at: Vector3; // in D [m]
-  side: "left" | "right" | "middle"; // of the place, where the text stands
+  at: Vector3; // position in D [m]
+  side: "left" | "right" | "middle"; // side of the position on which the text stands
   strong?: boolean;
 }
 
 export type Box = Pick<DOMRect, "left" | "right" | "top" | "bottom">;
 
-/// Whether a text can be read: it is in the picture as a whole, and nothing lies over it.
+/// Whether a text is legible: entirely inside the picture, and not covered.
 export function readable(text: Box, picture: Box, over: Box[]): boolean {
   const inside = text.left >= picture.left && text.right <= picture.right &&
     text.top >= picture.top && text.bottom <= picture.bottom;

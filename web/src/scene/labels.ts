@@ -1,4 +1,4 @@
-/// Words in the picture: pieces of text that stand at places of the scene.
+/// The texts at positions of the picture.
 
 import { Vector3, type Camera } from "three";
 import { find, make, setText } from "../dom";
@@ -8,7 +8,7 @@ export class Labels {
   private readonly root = find("labels");
   private readonly spans: HTMLElement[] = [];
 
-  /// @param canvas whose size the labels share.
+  /// @param canvas the canvas under the labels, of the same size.
   show(labels: Label[], camera: Camera, canvas: HTMLCanvasElement): void {
     while (this.spans.length < labels.length) {
       const span = make("span");

@@ -1,42 +1,42 @@
-/// How often pictures may be drawn, so that the run they show is not starved.
+/// Limits how often pictures are drawn, so that drawing does not slow the run down.
 
 export interface PaceState {
-  interval: number; // [ms] between the beginnings of two pictures, at least
+  interval: number; // shortest time between the starts of two pictures [ms]
   /// the picture costs more than the run can spare
   off: boolean;
 }
 
-const kSlow = 40; // [ms] a picture from which drawing counts as slow
-// The share of the time that slow pictures may take. A picture that the processor draws costs the run about a step.
+const kSlow = 40; // time per picture above which drawing counts as slow [ms]
+// Share of the time that slow pictures may take. A picture drawn by the processor costs the run about a step.
 const kShare = 0.125, kLeastShare = 0.04;
-const kPatience = 2500; // [ms] of missed rates, after which pictures take half their time
-const kEnough = 6; // pictures
-const kSlowest = 2000; // [ms] between pictures, at most
-const kLongest = 2500; // [ms] between pictures, from which there is no use in them
+const kPatience = 2500; // time of missed rates after which the pictures' share is halved [ms]
+const kEnough = 6; // pictures needed to measure their time
+const kSlowest = 2000; // longest time between pictures [ms]
+const kLongest = 2500; // time between pictures above which they are of no use [ms]
 
 export class Pace {
-  /// smoothed time of a picture [ms]
+  /// smoothed time per picture [ms]
   cost = 0;
-  private pictures = 0; // since it was last to be measured anew
+  private pictures = 0; // since the last measureAnew()
   private share = kShare;
-  private missed: number | null = null; // since when the run misses its rates [ms]
+  private missed: number | null = null; // time since which the run has missed its rates [ms]
 
-  /// @param software the processor draws, which the run needs too.
+  /// @param software whether the processor draws, which the run also needs.
   constructor(private readonly software: boolean) {}
 
   get slow(): boolean { return this.software || this.cost > kSlow; }
-  /// Whether `cost` is of enough pictures to judge by.
+  /// Whether `cost` covers enough pictures to be relied on.
   get measured(): boolean { return this.pictures >= kEnough; }
 
-  /// A picture took so long [ms].
+  /// Records the time that a picture took [ms].
   drew(cost: number): void {
     this.cost = this.cost === 0 ? cost : 0.8 * this.cost + 0.2 * cost;
     ++this.pictures;
   }
-  /// Pictures have other sizes from now on.
+  /// Restarts the measurement after the pictures' size has changed.
   measureAnew(): void { this.pictures = 0; }
 
-  /// Draws less the longer the run misses its rates. @param now [ms]. @param held whether the run keeps its rates.
+  /// Draws less the longer the run misses its rates. @param now [ms]. @param held whether the run meets its rates.
   state(now: number, held: boolean): PaceState {
     if (!this.slow) return { interval: 0, off: false };
     if (held) this.missed = null;
@@ -51,7 +51,7 @@ export class Pace {
     return { interval: Math.min(kSlowest, interval), off: off || (this.measured && interval > kLongest) };
   }
 
-  /// Somebody wants pictures in spite of all.
+  /// Starts again because the user asks for the picture.
   begin(): void {
     this.share = kShare;
     this.missed = null;

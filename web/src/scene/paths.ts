@@ -1,4 +1,4 @@
-/// The closed paths on the skin as ribbons, wide where the pressure is high, and the focal points that run along them slowed down.
+/// The closed paths on the skin as ribbons, wide where the pressure is high, and their focal points in slow motion.
 
 import { BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, GreaterDepth, Group, LessEqualDepth, Mesh, Points, ShaderMaterial, Vector2, type IUniform } from "three";
 import { pathColour } from "../colours";
@@ -6,7 +6,7 @@ import type { Path } from "../wire";
 
 const kRibbonVertex = /* glsl */ `
 attribute vec3 tangent_D, colour;
-attribute vec4 shape; // side −1 or 1, width [m], place along the path 0 to 1, where its focal point is
+attribute vec4 shape; // side −1 or 1, width [m], position along the path 0 to 1, position of its focal point
 uniform vec2 viewport;
 uniform float least;
 varying vec3 vColour;
@@ -18,7 +18,7 @@ void main() {
   vec2 along = (ahead.xy / ahead.w - clip.xy / clip.w) * viewport;
   vec2 across = length(along) > 1e-6 ? normalize(vec2(-along.y, along.x)) : vec2(0.0);
   float pixels = max(least, shape.y * projectionMatrix[1][1] / clip.w * viewport.y * 0.5);
-  // nearer to the eye than the skin it lies on
+  // slightly in front of the skin
   vec4 raised = projectionMatrix * vec4(at.xyz * (1.0 - 0.004 / length(at.xyz)), 1.0);
   clip.z = raised.z / raised.w * clip.w;
   clip.xy += across * shape.x * pixels / viewport * clip.w;
@@ -44,7 +44,7 @@ void main() {
 
 const kPointVertex = /* glsl */ `
 attribute vec3 colour;
-attribute float size; // radius of the glow [m]
+attribute float size; // glow radius [m]
 uniform vec2 viewport;
 varying vec3 vColour;
 void main() {
@@ -63,7 +63,7 @@ void main() {
   gl_FragColor = vec4(mix(vColour * max(ring, 0.6), vec3(1.0), core) * alpha, alpha);
 }`;
 
-/// Attributes that grow when more is put into them.
+/// Vertex attributes whose buffers grow on demand.
 class Growing {
   readonly geometry = new BufferGeometry();
   private capacity = 0;
@@ -80,10 +80,10 @@ class Growing {
   changed(): void { for (const name of Object.keys(this.sizes)) this.geometry.getAttribute(name).needsUpdate = true; }
 }
 
-/// Where a path's focal point is, 0 to 1 along it.
+/// The position of a path's focal point, 0 to 1 along it.
 interface Runner {
   phase: number;
-  period: number; // [s], as it is played
+  period: number; // as played [s]
 }
 
 export class Paths {
@@ -94,12 +94,12 @@ export class Paths {
   private readonly casing: IUniform<Color> = { value: new Color("#ffffff") };
   private readonly least: IUniform<number> = { value: 2.5 };
   private plan: Path[] = [];
-  private along: Float64Array[] = []; // of each path: length from its first point to each, and around [m]
+  private along: Float64Array[] = []; // per path: arc length from its first point to each, and of the whole loop [m]
   private begin: number[] = []; // first vertex of each path
   private readonly runners: Runner[] = [];
-  private clock = 0; // [s], as it is played
+  private clock = 0; // as played [s]
   private linear = Array.from({ length: 8 }, (_, i) => new Color().setRGB(...pathColour(i), "srgb"));
-  /// times slower than it is played
+  /// slow-motion factor
   slowdown = 50;
 
   constructor() {
@@ -165,7 +165,7 @@ export class Paths {
     while (this.runners.length < plan.length) this.runners.push({ phase: 0, period: 1 });
   }
 
-  /// Focal points go on by `dt` seconds of the viewer's time.
+  /// Advances the focal points by `dt` seconds of the viewer's time.
   advance(dt: number): void {
     const position = this.points.data("position"), colour = this.points.data("colour"), size = this.points.data("size");
     const shape = this.ribbons.data("shape");
@@ -177,7 +177,7 @@ export class Paths {
       const tint = this.linear[k % this.linear.length]!;
       colour.set([tint.r, tint.g, tint.b], 3 * k);
       if (path.kind === "focus") {
-        // modulation as it is felt: from nothing to full and back in a period
+        // modulation in slow motion: from zero to full and back in a period
         const intensity = 0.5 - 0.5 * Math.cos(2 * Math.PI * runner.phase);
         position.set(path.points.subarray(3, 6), 3 * k);
         size[k] = 0.004 + 0.011 * intensity;
@@ -198,14 +198,14 @@ export class Paths {
     this.points.changed();
   }
 
-  /// Where a path's focal point is now, 0 to 1: by one clock for paths in step and for foci.
+  /// The current position of a path's focal point, 0 to 1. Paths in step and foci share one clock.
   private phase(path: Path, runner: Runner, dt: number): number {
     if (path.kind === "focus") return (this.clock / runner.period + 1 - path.phase) % 1;
     if (path.loop > 0) return (Math.max(1, Math.round(path.loop / runner.period)) * (this.clock / path.loop)) % 1;
     return (runner.phase + dt / (this.slowdown * runner.period)) % 1;
   }
 
-  /// The point of path k before a place along it, and how far from there to the next.
+  /// The point of path k before a position along it, and the fraction of the way to the next.
   private place(k: number, phase: number): [number, number] {
     const lengths = this.along[k]!;
     const wanted = phase * lengths[lengths.length - 1]!;

@@ -1,4 +1,4 @@
-/// The point that a ray of the eye meets: the skin of a hand as the program computes with it.
+/// The point where a ray from the camera meets the skin that the program computes with.
 
 import { Matrix4, Vector3 } from "three";
 import { cellAt } from "../panels/plane_layout";
@@ -10,9 +10,9 @@ export interface Hit {
   point: Vector3; // in D [m]
 }
 
-const kRounds = 6; // of walking from the plane to the skin over it
+const kRounds = 6; // iterations from the plane to the skin
 
-/// Where a ray meets a patch: first its plane, and from there the skin at its height over the plane.
+/// Intersects a ray with a patch: first with its plane, then with the skin at its height over the plane.
 function hitPatch(patch: Patch, origin: Vector3, direction: Vector3): Hit | null {
   const X_DP = new Matrix4().fromArray([...patch.pose, 0, 0, 0, 1]).transpose();
   const X_PD = X_DP.clone().invert();
@@ -33,7 +33,7 @@ function hitPatch(patch: Patch, origin: Vector3, direction: Vector3): Hit | null
   return { patch, cell, point: at.applyMatrix4(X_DP) };
 }
 
-/// The nearest skin along a ray; null where it meets none.
+/// The nearest skin along a ray; null if the ray misses.
 export function pick(field: Patch[], origin: Vector3, direction: Vector3): Hit | null {
   let nearest: Hit | null = null;
   for (const patch of field) {

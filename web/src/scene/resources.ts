@@ -1,8 +1,8 @@
-/// Resources that a renderer keeps for the parts of a scene.
+/// Resources that a renderer holds for the parts of a scene.
 
 import { InstancedMesh, Line, Material, Mesh, Points, ShaderMaterial, Texture, type Object3D } from "three";
 
-/// Frees what renderers keep for a material and its textures.
+/// Frees what renderers hold for a material and its textures.
 export function freeMaterial(material: Material): void {
   if (material instanceof ShaderMaterial) {
     for (const { value } of Object.values(material.uniforms)) if (value instanceof Texture) value.dispose();
@@ -10,8 +10,8 @@ export function freeMaterial(material: Material): void {
   material.dispose();
 }
 
-/// Frees all that renderers keep for the objects of a scene and for its materials and their textures. They are made anew
-/// when they are drawn again.
+/// Frees what renderers hold for the objects of a scene, their materials and textures. They are created again when they
+/// are drawn again.
 export function freeResources(scene: Object3D): void {
   scene.traverse((object) => {
     if (object instanceof InstancedMesh) object.dispose();

@@ -1,4 +1,4 @@
-/// Lengths in the picture: heights above the array at its left, the box's width, and how high the palm is.
+/// Lengths in the picture: a ruler of heights at the left, the width of the box, and the height of the palm.
 
 import {
   BufferGeometry, Color, Float32BufferAttribute, Group, LineBasicMaterial, LineSegments, Vector3, type Camera,
@@ -7,15 +7,15 @@ import type { Hello } from "../messages";
 import type { Hand } from "../wire";
 import type { Label } from "./label";
 
-const kTick = 0.05, kNumber = 0.1; // between ticks, and between numbers [m]
+const kTick = 0.05, kNumber = 0.1; // spacing of ticks and of numbers [m]
 const kTickLength = 0.008; // [m]
-const kParts = [[0, 0.2], [0.1, 0.3], [0.2, 0.3]] as const; // heights of which the first is to be in the picture [m]
-const kBeside = 45; // room that the numbers take beside the ruler [pixels]
-const kUpAndDown = 0.86; // share of the picture's half, up and down, in which the ruler is to be
-const kShares = Array.from({ length: 15 }, (_, i) => 1 - i / 20); // of the way from the floor's middle to a corner
+const kParts = [[0, 0.2], [0.1, 0.3], [0.2, 0.3]] as const; // heights to be visible, in order of preference [m]
+const kBeside = 45; // space for the numbers next to the ruler [pixels]
+const kUpAndDown = 0.86; // vertical share of the picture in which the ruler should lie
+const kShares = Array.from({ length: 15 }, (_, i) => 1 - i / 20); // from the middle of the floor to a corner
 
-/// The place that is leftmost in the picture, of those between the floor's corners and its middle at which a part of the
-/// ruler is in it, the lowest if it can be. A corner itself is often beside a narrow picture.
+/// The leftmost position in the picture, on the lines from the floor's middle to its corners, at which one of kParts is
+/// visible, if possible the first. In a narrow picture a corner itself is often out of sight.
 function leftmost(corners: Vector3[], middle: Vector3, camera: Camera, width: number): Vector3 {
   const room = 1 - (2 * kBeside) / width;
   const feet = corners.flatMap((corner) => kShares.map((share) => middle.clone().lerp(corner, share)));
@@ -25,7 +25,7 @@ function leftmost(corners: Vector3[], middle: Vector3, camera: Camera, width: nu
     const left = ({ ends }: typeof seen[number]) => Math.min(...ends.map((p) => p.x));
     if (inside.length > 0) return inside.reduce((a, b) => (left(b) < left(a) ? b : a)).foot;
   }
-  return corners[0]!; // the eye looks elsewhere
+  return corners[0]!; // the camera looks elsewhere
 }
 
 export class Ruler {
@@ -48,7 +48,7 @@ export class Ruler {
     this.placeBox(new Vector3(...hello.box_mm.origin).divideScalar(1000), hello.box_mm.edge / 1000);
   }
 
-  /// The box of the smoke may follow a hand. @param corner the lowest of each coordinate [m].  @param edge [m].
+  /// Moves the box, which may follow a hand. @param corner its smallest coordinates [m].  @param edge its edge [m].
   placeBox(corner: Vector3, edge: number): void {
     if (this.low.equals(corner) && this.edge === edge) return;
     this.low.copy(corner);
@@ -58,7 +58,7 @@ export class Ruler {
     for (let z = 0; z <= top + 1e-9; z += kTick) points.push(0, 0, z, -kTickLength, 0, z);
     const { geometry } = this.upright;
     geometry.setAttribute("position", new Float32BufferAttribute(points, 3));
-    geometry.computeBoundingSphere(); // a picture drawn before this knew it without points, as out of sight
+    geometry.computeBoundingSphere(); // an earlier picture cached an empty sphere, which is never in sight
   }
 
   setHand(hand: Hand | undefined): void { this.palmHeight = hand === undefined ? null : hand.joints[2]!; }
@@ -68,8 +68,8 @@ export class Ruler {
     this.accent.color = new Color(dark ? "#ffb454" : "#b84e00");
   }
 
-  /// Puts the ruler at the left of the picture, on an edge of the box where there is room. @return the numbers on it.
-  /// @param width of the picture [pixels].
+  /// Puts the ruler at the left of the picture, on an edge of the box if there is room. @return its numbers.
+  /// @param width the picture's width [pixels].
   update(camera: Camera, width: number): Label[] {
     if (this.edge === 0) return [];
     const { low, edge } = this;
@@ -94,7 +94,7 @@ export class Ruler {
     return [...labels, ...this.widths(camera)];
   }
 
-  /// Names of the two edges at the bottom that are nearest to the eye.
+  /// Labels of the two bottom edges nearest to the camera.
   private widths(camera: Camera): Label[] {
     const { low, edge } = this;
     const nearer = (a: Vector3, b: Vector3) => (a.distanceTo(camera.position) < b.distanceTo(camera.position) ? a : b);

@@ -1,4 +1,4 @@
-/// The smoke as a lit volume, marched along the rays of the eye. What is before a hand and what is behind it go into two images.
+/// The smoke as a lit volume, ray-marched into two images: the smoke in front of the hands, and behind them.
 
 import { Color, Data3DTexture, GLSL3, LinearFilter, Matrix4, RawShaderMaterial, RGFormat, UnsignedByteType, Vector3, type Texture } from "three";
 import type { Smoke } from "../wire";
@@ -52,7 +52,7 @@ void main() {
     if (!passed && t >= hand) { before = sum; sum = vec4(0.0); passed = true; }
     vec3 at = (eye + t * ray - corner) / edge;
     vec2 s = texture(smoke, at).rg;
-    // nothing is cut off sharply at the walls of the box
+    // fades out at the walls of the box
     vec3 margin = smoothstep(vec3(0.0), vec3(0.05), at) * smoothstep(vec3(0.0), vec3(0.05), 1.0 - at);
     float density = s.r * margin.x * margin.y * smoothstep(0.0, 0.12, 1.0 - at.z);
     float alpha = 1.0 - exp(-extinction * density * dt);
@@ -63,15 +63,15 @@ void main() {
   if (passed) behind = sum; else before = sum;
 }`;
 
-/// How much light from above and from the side reaches each cell, 0 to 255.
+/// Light that reaches each cell from above and from the side, 0 to 255.
 function light(smoke: Smoke, lightOf: Float32Array): void {
   const { n, density } = smoke;
   const slice = n * n;
-  const opacity = (14 * smoke.edge) / n; // of a full cell, towards the light
+  const opacity = (14 * smoke.edge) / n; // opacity of a full cell, towards the light
   for (let z = n - 1; z >= 0; --z) for (let y = 0; y < n; ++y) for (let x = 0; x < n; ++x) {
     let above = 1;
     if (z + 1 < n) {
-      // the light comes from the upper left front: half a cell aside for each cell up
+      // the light comes from the upper left front: half a cell sideways per cell up
       const x0 = Math.max(0, x - 1), y0 = Math.max(0, y - 1);
       const up = (z + 1) * slice;
       above = 0;

@@ -1,4 +1,4 @@
-/// The surface where a signed distance is zero, by naive surface nets (S. F. F. Gibson, "Constrained elastic surface nets", 1998):
+/// The zero surface of a signed distance, by naive surface nets (S. F. F. Gibson, "Constrained elastic surface nets", 1998):
 /// one vertex in each cell that the surface crosses, one quad across each edge that it crosses.
 
 export interface Surface {
@@ -10,7 +10,7 @@ export interface Surface {
 type Distance = (x: number, y: number, z: number) => number;
 type Point = { x: number; y: number; z: number };
 
-/// Distances at the corners of a grid; far from the surface only their sign is right, which is enough.
+/// Distances at the corners of a grid. Far from the surface only the signs are correct, which suffices.
 function sample(distance: Distance, lower: Point, step: number, size: [number, number, number]): Float32Array {
   const [nx, ny, nz] = size;
   const values = new Float32Array(nx * ny * nz);
@@ -33,7 +33,7 @@ export function surfaceNets(distance: Distance, lower: Point, upper: Point, step
   const values = sample(distance, lower, step, size);
   const at = (x: number, y: number, z: number) => values[(z * ny + y) * nx + x]!;
 
-  // vertices: the mean of the crossings of a cell's edges
+  // vertices: mean of the crossings of a cell's edges
   const vertexOf = new Int32Array(nx * ny * nz).fill(-1);
   const points: number[] = [];
   const corner = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, (i >> 1) & 1, (i >> 2) & 1] as const);
@@ -59,7 +59,7 @@ export function surfaceNets(distance: Distance, lower: Point, upper: Point, step
     points.push(lower.x + (x + sx / crossings) * step, lower.y + (y + sy / crossings) * step, lower.z + (z + sz / crossings) * step);
   }
 
-  // quads, wound so that they face the side where the distance is positive
+  // quads, wound to face the positive side
   const indices: number[] = [];
   const cell = (x: number, y: number, z: number) => vertexOf[(z * ny + y) * nx + x]!;
   const quad = (a: number, b: number, c: number, d: number, outwards: boolean) => {
@@ -73,7 +73,7 @@ export function surfaceNets(distance: Distance, lower: Point, upper: Point, step
     if (inside !== at(x, y, z + 1) < 0) quad(cell(x - 1, y - 1, z), cell(x, y - 1, z), cell(x, y, z), cell(x - 1, y, z), inside);
   }
 
-  // onto the surface, along the gradient, which is the normal there
+  // projects onto the surface along the gradient, which is the normal there
   const positions = Float32Array.from(points);
   const normals = new Float32Array(positions.length);
   const h = step / 4;

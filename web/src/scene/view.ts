@@ -1,4 +1,4 @@
-/// The picture in three dimensions: array and box behind, hands and paths before them, smoke between and around.
+/// The three-dimensional picture: array and box at the back, hands and paths in front, and the smoke.
 
 import {
   BufferGeometry, Color, DepthTexture, DirectionalLight, Float32BufferAttribute, GLSL3, HalfFloatType, HemisphereLight,
@@ -29,11 +29,11 @@ function target(): WebGLRenderTarget {
 
 const kContext: WebGLContextAttributes = { alpha: false, antialias: false, powerPreference: "high-performance" };
 
-/// Whether there is a context to draw with: the browser may take it away at any time, or have none to give.
+/// State of the graphics context, which the browser may take away at any time, or not have at all.
 export type Graphics = "ready" | "lost" | "none";
 
-/// Least and most share of the screen's pixels along a side; time of a picture above which there are fewer of them, and
-/// below which more [ms].
+/// Smallest and largest share of the screen's pixels along a side; times per picture above which the share is lowered,
+/// and below which it is raised [ms].
 const kQuality = {
   graphics: { least: 0.6, most: 1, slow: 66, fast: 30 }, processor: { least: 0.35, most: 0.8, slow: 90, fast: 45 },
 };
@@ -65,17 +65,17 @@ export class View {
   private readonly together: RawShaderMaterial;
   private smokeSequence = -1;
   private fieldSequence = -1;
-  private quality = 1; // share of the screen's pixels along a side
+  private quality = 1; // fraction of the screen's pixels along a side
   private steps = 56;
   private readonly labels = new Labels();
   private field: Frame["field"] = [];
-  software = false; // the processor draws
+  software = false; // whether the processor draws
   graphics: Graphics = "none";
   private gl: WebGL2RenderingContext | null = null;
   private renderer: WebGLRenderer | null = null;
   private fence: WebGLSync | null = null;
-  private drawn = -Infinity; // when a picture was last allowed [ms]
-  private begun = 0; // when it was begun [ms]
+  private drawn = -Infinity; // when ready() last allowed a picture [ms]
+  private begun = 0; // when its drawing began [ms]
   showSmoke = true;
 
   private unhurried = false;
@@ -109,14 +109,14 @@ export class View {
     this.handScene.add(this.hands.group, this.paths.group);
     this.eye = new OrbitCamera(canvas);
     canvas.addEventListener("webglcontextlost", (event) => {
-      event.preventDefault(); // the browser is to give it back
+      event.preventDefault(); // otherwise the browser does not restore it
       this.lose();
     });
     canvas.addEventListener("webglcontextrestored", () => this.begin());
     this.begin();
   }
 
-  /// Begins to draw where the browser has a context for it, at first, and again when it gives one back.
+  /// Starts drawing once the browser provides a context, at first and after a loss.
   begin(): void {
     if (this.renderer !== null) return;
     this.gl ??= this.canvas.getContext("webgl2", kContext);
@@ -132,13 +132,13 @@ export class View {
       this.renderer.autoClear = false;
       this.graphics = "ready";
     } catch (error) {
-      if (this.gl.isContextLost()) return; // while it began
+      if (this.gl.isContextLost()) return; // lost in the meantime
       this.graphics = "none";
       console.error(error);
     }
   }
 
-  /// Forgets all that the context held: a later one knows none of it.
+  /// Drops all resources of a lost context: a new one does not have them.
   private lose(): void {
     this.graphics = "lost";
     this.fence = null;
@@ -179,7 +179,7 @@ export class View {
     (this.together.uniforms.outerColour!.value as Color).set(dark ? "#080c13" : "#e3e9f1");
   }
 
-  /// The skin that is seen at a place of the page, as the program computes with it.
+  /// The skin seen at a position of the page, as the program computes with it.
   skinAt(clientX: number, clientY: number): Hit | null {
     const box = this.canvas.getBoundingClientRect();
     const x = (2 * (clientX - box.left)) / box.width - 1, y = 1 - (2 * (clientY - box.top)) / box.height;
@@ -188,7 +188,7 @@ export class View {
     return pick(this.field, caster.ray.origin, caster.ray.direction);
   }
 
-  /// Whether the next picture may be drawn: the one before is done, and was begun `interval` [ms] ago.
+  /// Whether the next picture may be drawn: the previous one is finished, and was allowed `interval` [ms] ago.
   ready(now: number, interval: number): boolean {
     const { gl } = this;
     if (gl === null || this.graphics !== "ready" || gl.isContextLost()) return false;
@@ -203,7 +203,7 @@ export class View {
     return true;
   }
 
-  /// Draws the next picture, dt seconds after the one before.
+  /// Draws the next picture, dt seconds after the previous one.
   render(dt: number): void {
     const { gl, renderer } = this;
     if (gl === null || renderer === null) return;
@@ -241,7 +241,7 @@ export class View {
     gl.flush();
   }
 
-  /// From now on pictures are drawn with all their pixels, however long that takes, or as well as there is time for.
+  /// Draws later pictures with all their pixels, however long it takes, or again as time permits.
   setUnhurried(unhurried: boolean): void {
     this.unhurried = unhurried;
     this.setQuality(unhurried || !this.software ? 1 : 0.6);
@@ -278,7 +278,7 @@ export class View {
     this.paths.setViewport(width, height, scale);
   }
 
-  /// Fewer pixels and shorter marches where pictures take too long, and more again where there is time.
+  /// Reduces pixels and ray steps if pictures take too long, and raises them if there is time.
   private keepPace(dt: number): void {
     if (dt <= 0 || this.unhurried) return;
     const { speed, pace } = this;

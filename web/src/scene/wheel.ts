@@ -1,18 +1,18 @@
-/// Turns of a mouse's wheel, and pinches of a touchpad, which browsers send as turns with Ctrl.
+/// Turns of a mouse wheel, and pinches on a touchpad, which browsers report as turns with Ctrl.
 
 export type Turn = Pick<WheelEvent, "deltaY" | "deltaMode" | "ctrlKey">;
 
-const kLine = 33; // of a wheel that turns by lines, three a notch [pixels]
-const kTurn = { most: 60, rate: 0.002 }; // of one event [pixels]; of the distance's logarithm [1/pixel]
-// a notch with Ctrl is some 120 pixels, a step of a pinch some 2 to 10
+const kLine = 33; // pixels per line for a wheel that reports lines, three a notch
+const kTurn = { most: 60, rate: 0.002 }; // limit per event [pixels]; change of log distance [1/pixel]
+// a notch with Ctrl is about 120 pixels, a step of a pinch about 2 to 10
 const kPinch = { most: 30, rate: 0.01 };
 
-/// How far it goes down [pixels]. @param page height that a wheel which turns by pages goes [pixels].
+/// Downward motion [pixels]. @param page height for a wheel that reports pages [pixels].
 export function pixelsOf({ deltaY, deltaMode }: Turn, page: number): number {
   return deltaY * (deltaMode === 1 ? kLine : deltaMode === 2 ? page : 1);
 }
 
-/// Factor of the eye's distance.
+/// Factor for the camera's distance.
 export function zoomOf(turn: Turn, page: number): number {
   const { most, rate } = turn.ctrlKey ? kPinch : kTurn;
   return Math.exp(rate * Math.max(-most, Math.min(most, pixelsOf(turn, page))));

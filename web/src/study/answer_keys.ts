@@ -1,4 +1,4 @@
-/// Keys of answers and of tuning: letters, digits, arrows, and those that foot switches and remote controls send.
+/// The keys for answers and tuning: letters, digits, arrows, and those of foot switches and remote controls.
 
 import { keyAmong, type KeyPress } from "../keyboard";
 import type { Controls } from "./messages";
@@ -8,11 +8,11 @@ const kBefore = ["ArrowLeft", "PageUp"], kAfter = ["ArrowRight", "PageDown"];
 const kMore = ["+", "ArrowUp", "ArrowRight", "PageDown"], kLess = ["-", "ArrowDown", "ArrowLeft", "PageUp"];
 
 export type AnswerAct =
-  | { do: "answer"; button: number } // its place, from 0 at the left
+  | { do: "answer"; button: number } // index from 0 at the left
   | { do: "tune"; to: "less" | "more"; coarse: boolean }
   | { do: "accept" };
 
-/// The keys of each button: its number, and arrows for the leftmost and the rightmost one.
+/// The keys of each button: its number, and arrows for the leftmost and rightmost button.
 function keysOf({ form, words }: Buttons): string[][] {
   if (form === "yes-no") return [kYes, kNo];
   return words.map((_, i) => [`${i + 1}`, ...(i === 0 ? kBefore : i === words.length - 1 ? kAfter : [])]);
@@ -20,7 +20,7 @@ function keysOf({ form, words }: Buttons): string[][] {
 
 export type Buttons = Pick<Controls, "form" | "words">;
 
-/// The act of a key where answers are given so; null for none.
+/// The action of a key under these controls; null for none.
 export function answerOf(press: KeyPress, controls: Buttons): AnswerAct | null {
   if (controls.form === "tuned") {
     const key = keyAmong(press, [...kMore, ...kLess, "Enter"]);

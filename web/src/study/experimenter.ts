@@ -1,4 +1,4 @@
-/// The experimenter's page: where the session is, what to read aloud, and the keys for what comes next.
+/// The experimenter's page: the state of the session, what to read aloud, and the keys for the next step.
 
 import { find, setText } from "../dom";
 import { answering, listen, minutes, showScenes, showTask, StudyPage } from "./page";
@@ -15,7 +15,7 @@ const kTitles: Record<Phase, string> = {
   presenting: "The participant feels the stimulus",
   break: "Break",
   paused: "Paused",
-  done: "All answers are there",
+  done: "All answers are recorded",
   withdrawn: "The participant has left",
 };
 const kNext: Partial<Record<Phase, string>> = {
@@ -35,7 +35,7 @@ const page = new StudyPage<Experimenter>("/live", "experimenter", (study) => {
   setText(find("condition"), c === null ? "" : `${c.scene} with ${c.method}${c.level === undefined ? "" : ` at ${c.level}`}`);
   setText(find("left"), phase === "training" ? `${minutes(study.training_left_s)} left` : "");
   setText(find("waits"), phase === "settling" ? study.waits_for || (study.needs === "" ? "The smoke develops." : "") : !study.hand ? "No hand in sight." : "");
-  setText(find("output"), study.output ? "The array sounds" : "The array is silent");
+  setText(find("output"), study.output ? "The array is on" : "The array is silent");
   find("output").dataset.on = String(study.output);
   setText(find("needs"), study.needs);
   setText(find("bound"), study.bound);
@@ -48,7 +48,7 @@ const page = new StudyPage<Experimenter>("/live", "experimenter", (study) => {
   const forced = study.controls.form === "interval";
   setText(find("first-key"), forced ? "1" : "Y");
   setText(find("second-key"), forced ? "2" : "N");
-  setText(find("answers-by"), phase === "presenting" && study.answers === "participant" ? "The participant answers; these are for when they cannot." : "");
+  setText(find("answers-by"), phase === "presenting" && study.answers === "participant" ? "The participant answers; use these buttons only if they cannot." : "");
   find("anyway").hidden = phase !== "settling" || (study.waits_for === "" && study.needs === "");
   find("pause").hidden = phase !== "settling" && phase !== "presenting";
   find("correct").hidden = study.last === null || study.controls.words.length !== 2 || phase === "presenting" || phase === "withdrawn";
@@ -67,7 +67,7 @@ find("anyway").addEventListener("click", () => page.act({ type: "study", do: "an
 find("pause").addEventListener("click", pause);
 find("correct").addEventListener("click", () => {
   page.act({ type: "study", do: "correct" });
-  find("correct").blur(); // Enter is for what comes next, not for changing it back
+  find("correct").blur(); // Enter is for the next step, not for changing the answer back
 });
 const leave = find<HTMLDialogElement>("leave");
 find("withdraw").addEventListener("click", () => leave.showModal());

@@ -1,7 +1,7 @@
-/// The static image of a question: a flat hand from above, and where smoke would blow on it.
+/// The static image of a question: a flat hand seen from above, and where smoke would hit it.
 
 const kSvg = "http://www.w3.org/2000/svg";
-/// Fingers of a right hand, palm down, in mm over the middle of the palm: foot, tip and width.
+/// Fingers of a right hand, palm down: base, tip and width [mm from the middle of the palm].
 const kFingers: [number, number, number, number, number][] = [
   [-30, -10, -68, 22, 20], [-27, 30, -38, 98, 17], [-9, 36, -12, 112, 18], [9, 35, 13, 103, 17], [27, 28, 36, 80, 15],
 ];
@@ -12,7 +12,7 @@ function shape(name: string, attributes: Record<string, string | number>): SVGEl
   return element;
 }
 
-/// @param jets x, y and radius of each, in mm, fingers along +y.
+/// @param jets x, y and radius of each [mm], with the fingers along +y.
 export function drawHand(root: HTMLElement, jets: [number, number, number][]): void {
   const wanted = JSON.stringify(jets);
   if (root.dataset.jets === wanted) return;

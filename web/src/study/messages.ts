@@ -1,4 +1,4 @@
-/// The messages of a study, docs/reference/wire.md, as types, and the check of those that come from the program.
+/// The messages of a study, docs/reference/wire.md, as types, and the validation of those that arrive.
 
 export const kPhases = [
   "consent", "about", "training", "ready", "settling", "presenting", "break", "paused", "done", "withdrawn",
@@ -7,38 +7,38 @@ export type Phase = (typeof kPhases)[number];
 export const kForms = ["yes-no", "interval", "tuned"] as const;
 export type AnswerForm = (typeof kForms)[number];
 
-/// How an answer is given, whatever the task: the pages make their buttons and keys from it.
+/// How an answer is given, whatever the task: the pages derive their buttons and keys from it.
 export interface Controls {
   form: AnswerForm;
-  words: string[]; // of the buttons, from left to right; none where the level is tuned
-  spoken: string; // the sentence for those who answer aloud
-  intervals: number; // of a trial
+  words: string[]; // on the buttons, from left to right; none when the level is tuned
+  spoken: string; // sentence for participants who answer aloud
+  intervals: number; // per trial
 }
 
 interface StudyBase {
   type: "study";
   title: string;
   phase: Phase;
-  done: number; // answers
-  trials: number; // in all, or at most
-  open: boolean; // whether they may become fewer
-  task: string; // its name in the protocol
+  done: number; // answers so far
+  trials: number; // total, or at most
+  open: boolean; // whether the total may become smaller
+  task: string; // name in the protocol
   controls: Controls;
-  interval: number; // that sounds, from 1; 0 in silence, and of a trial with only one
+  interval: number; // interval being presented, from 1; 0 between intervals and in a trial with one interval
   takes_answer: boolean;
   training_left_s: number;
-  explored: number; // the scene of training, by its place
+  explored: number; // index of the training scene
   scenes: string[];
-  answers: "experimenter" | "participant"; // who enters them
+  answers: "experimenter" | "participant"; // who enters the answers
   hand: boolean; // in sight
-  waits_for: string; // why the trial does not begin; "" where it does
+  waits_for: string; // why the trial does not begin; "" when it can
 }
-/// The state of the participant's page, reported twice a second.
+/// The state of the participant's page, which reports it twice a second.
 export interface PageReport {
   type: "page";
   visible: boolean;
   noise: "off" | "silent" | "playing";
-  picture: boolean; // the simulation is being drawn
+  picture: boolean; // whether the simulation is drawn
 }
 export interface Experimenter extends StudyBase {
   room: "experimenter";
@@ -47,16 +47,16 @@ export interface Experimenter extends StudyBase {
   output: boolean;
   question: string | null;
   condition: { method: string; scene: string; level?: number } | null;
-  last: boolean | null; // the last answer: yes or no, or the second interval or the first
-  needs: string; // what the participant's page lacks, and what to do; "" where nothing
-  bound: string; // staircases at an end of their range; "" where none is
+  last: boolean | null; // the last answer: yes or no, or second or first interval
+  needs: string; // what the participant's page lacks, and what to do; "" for nothing
+  bound: string; // staircases at a limit of their range; "" for none
   strengths: string;
   problem: string;
 }
 export interface Participant extends StudyBase {
   room: "participant";
   consent: string;
-  noise: boolean; // is played in training and trials
+  noise: boolean; // whether noise plays in training and trials
   feedback: boolean | null;
   question: { text: string; jets_mm: [number, number, number][] } | null; // x, y, radius
 }

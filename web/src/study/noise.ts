@@ -1,23 +1,23 @@
-/// Noise that masks the sound of the array: the same all the time that a stimulus may come, so that it tells nothing.
+/// Noise that masks the array's sound. It is the same whenever a stimulus may come, so that it reveals nothing.
 
-const kSeconds = 8, kHighest = 8000, kLevel = 0.25, kFade = 0.1; // of the loop [s]; cut-off [Hz]; of 1; [s]
+const kSeconds = 8, kHighest = 8000, kLevel = 0.25, kFade = 0.1; // loop [s]; cut-off [Hz]; amplitude; fade [s]
 
-const kMeasured = 0.02; // rms of the output above which it plays; at kLevel it is 0.08
-const kStands = 200; // a clock of the audio that has not moved for so long has stopped [ms]
+const kMeasured = 0.02; // output rms above which the noise counts as playing; at kLevel it is 0.08
+const kStands = 200; // time without progress after which the audio clock has stopped [ms]
 
 export class Noise {
   private context: AudioContext | null = null;
   private gain: GainNode | null = null;
   private analyser: AnalyserNode | null = null;
-  private wanted = false; // by play(), which may come before there is audio
+  private wanted = false; // as set by play(), possibly before there is audio
   private readonly samples = new Float32Array(2048);
-  private moved = { audio: 0, at: -Infinity }; // the audio's clock [s], and when it was seen to move [ms]
+  private moved = { audio: 0, at: -Infinity }; // audio clock [s], and when it last advanced [ms]
 
-  /// @param changed is called when the browser starts or stops the audio.
+  /// @param changed called when the browser starts or stops the audio.
   constructor(private readonly changed: () => void) {}
 
-  /// "off": a browser lets a page sound only once somebody has pressed something. "playing": measured in what the page
-  /// puts out; the volume of the computer is beyond it.
+  /// "off": browsers allow sound only after the user has pressed something. "playing" is measured in the page's output;
+  /// the volume of the computer is unknown.
   get state(): "off" | "silent" | "playing" {
     const { context, analyser, moved, samples } = this;
     if (context?.state !== "running" || analyser === null) return "off";
@@ -30,7 +30,7 @@ export class Noise {
     return Math.sqrt(squares / samples.length) > kMeasured ? "playing" : "silent";
   }
 
-  /// Called by a press.
+  /// Starts the audio; to be called from a click.
   async begin(): Promise<void> {
     if (this.context !== null) return this.context.resume();
     const context = this.context = new AudioContext();

@@ -1,4 +1,4 @@
-/// The two pages of a study have these in common: the link to the program, the theme, and keys.
+/// Shared by the two pages of a study: the connection to the program, the theme, and keys.
 
 import { Connection } from "../connection";
 import { find, setText } from "../dom";
@@ -7,7 +7,7 @@ import { answerOf } from "./answer_keys";
 import { Picture } from "./picture";
 import type { Controls, Study, StudyAct } from "./messages";
 
-/// How far the session is, in words.
+/// The session's progress in words.
 export function progress(study: Study): string {
   const next = Math.min(study.done + 1, study.trials);
   if (study.phase === "done") return `All ${study.open ? study.done : study.trials} trials done`;
@@ -23,8 +23,8 @@ export class StudyPage<S extends Study> {
   readonly connection: Connection;
   readonly picture: Picture;
 
-  /// @param path of the WebSocket. @param show a new state.
-  /// @param opened is called whenever the link to the program is there.
+  /// @param path of the WebSocket. @param show called with each new state.
+  /// @param opened called whenever the connection opens.
   constructor(path: string, private readonly room: S["room"], private readonly show: (study: S) => void, opened?: () => void) {
     const dark = window.matchMedia("(prefers-color-scheme: dark)");
     const theme = () => (document.documentElement.dataset.theme = dark.matches ? "dark" : "light");
@@ -65,7 +65,7 @@ export class StudyPage<S extends Study> {
   }
 }
 
-/// Buttons that stand for a scene of training. The same ones stay while the scenes do.
+/// Buttons for the scenes of a training. They are kept while the scenes stay the same.
 export function showScenes(root: HTMLElement, study: Study, explore: (scene: number) => void): void {
   if (root.childElementCount !== study.scenes.length) {
     root.replaceChildren(...study.scenes.map((scene, i) => {
@@ -79,7 +79,7 @@ export function showScenes(root: HTMLElement, study: Study, explore: (scene: num
   [...root.children].forEach((button, i) => button.setAttribute("aria-pressed", String(i === study.explored)));
 }
 
-/// The answers' buttons: two stand on the page, and more are added where a task has more answers.
+/// Shows the answer buttons: two are part of the page, and more are added for tasks with more answers.
 function showAnswers(words: string[]): void {
   const [first, second] = words;
   setText(find("first-word"), first ?? "");
@@ -97,7 +97,7 @@ function showAnswers(words: string[]): void {
   });
 }
 
-/// The task's buttons, and the interval that sounds. The same on both pages.
+/// Shows the task's buttons and the current interval, the same on both pages.
 export function showTask(study: Study, answers: boolean): void {
   const { form, words, intervals } = study.controls;
   const tuned = form === "tuned";
@@ -111,14 +111,14 @@ export function showTask(study: Study, answers: boolean): void {
 
 type Acting = Pick<StudyPage<Study>, "study" | "act">;
 
-/// How a participant answers, by the place of a button from 0 at the left; and how they tune.
+/// Ways to answer, by the index of a button from 0 at the left, and to tune.
 export interface Answering {
   answer(button: number): void;
   tune(to: "less" | "more", coarse: boolean): void;
   accept(): void;
 }
 
-/// @param may whether whoever is at this page may answer now.
+/// @param may whether the user of this page may answer now.
 export function answering(page: Acting, may: () => boolean): Answering {
   const study = () => (page.study?.phase === "presenting" && may() ? page.study : null);
   const ways: Answering = {
@@ -146,7 +146,7 @@ export function answering(page: Acting, may: () => boolean): Answering {
   return ways;
 }
 
-/// Fills in the buttons of an adjustment.
+/// Adds the buttons of an adjustment.
 function addTuning(root: HTMLElement, ways: Answering): void {
   const add = (id: string, words: string, keys: string, act: () => void) => {
     const button = document.createElement("button");
@@ -167,7 +167,7 @@ function addTuning(root: HTMLElement, ways: Answering): void {
   accept.className = "strong";
 }
 
-/// @return whether the key answers or tunes. One that is held down counts once, but for tuning.
+/// @return whether the key answers or tunes. Only tuning repeats while a key is held.
 function press(event: KeyboardEvent, controls: Controls, ways: Answering): boolean {
   const act = answerOf(event, controls);
   if (act?.do === "tune") ways.tune(act.to, act.coarse);
@@ -176,8 +176,8 @@ function press(event: KeyboardEvent, controls: Controls, ways: Answering): boole
   return act !== null;
 }
 
-/// Listens for keys that answer, tune or go on. A key that is held down counts once, but for tuning, and what is typed
-/// into a field not at all.
+/// Handles keys that answer, tune or continue. Only tuning repeats while a key is held, and keys typed into a field are
+/// ignored.
 export function listen(page: Acting, ways: Answering, others: Record<string, () => void> = {}): void {
   document.addEventListener("keydown", (event) => {
     const element = event.target as HTMLElement;

@@ -1,4 +1,4 @@
-/// The participant's page: only what the protocol shows.
+/// The participant's page. It shows only what the protocol allows.
 
 import { find, setText } from "../dom";
 import { drawHand } from "./hand_drawing";
@@ -11,13 +11,13 @@ import "../styles/study.css";
 const kWords: Record<Phase, string> = {
   consent: "", about: "A few things about you",
   training: "Hold your hand flat above the device, palm down, and feel the smoke.",
-  ready: "Rest your hand. It goes on in a moment.",
+  ready: "Rest your hand. The study continues in a moment.",
   settling: "Hold your hand flat above the device, palm down, and wait.",
   presenting: "", break: "A break. Rest your hand.", paused: "A pause. Rest your hand.",
   done: "That was all. Thank you!", withdrawn: "You have left the study. Thank you for your time.",
 };
 
-const kReports = 500; // between reports of what this page does [ms]
+const kReports = 500; // interval between reports of this page's state [ms]
 
 const noise = new Noise(() => {
   find("noise").hidden = !page.study?.noise || noise.state !== "off";
@@ -47,7 +47,7 @@ const page = new StudyPage<Participant>("/guest/live", "participant", (study) =>
   find("noise").hidden = !study.noise || noise.state !== "off";
 }, () => report());
 
-/// The program holds trials until this page does what they need.
+/// The program holds trials until this page meets their requirements.
 function report(): void {
   page.connection.send({ type: "page", visible: !document.hidden, noise: noise.state, picture: page.picture.draws });
 }

@@ -1,23 +1,23 @@
-/// The simulation in three dimensions, while frames come.
+/// The three-dimensional simulation, shown while frames arrive.
 
 import type { Hello } from "../messages";
 import { View } from "../scene/view";
 import type { Frame } from "../wire";
 import { find } from "../dom";
 
-const kDrawn = 2000; // after the last picture nothing is drawn any more [ms]
-const kKept = 1000; // after the last frame the picture goes [ms]
+const kDrawn = 2000; // time after the last picture in which drawing counts as active [ms]
+const kKept = 1000; // time after the last frame before the picture is hidden [ms]
 
 export class Picture {
-  private view: View | null = null; // made when it is needed: many a participant never sees it
+  private view: View | null = null; // created on demand: many participants never see it
   private hello: Hello | null = null;
   private frame: Frame | null = null;
   private drawn: Frame | null = null;
-  private came = -Infinity; // the last frame [ms]
+  private came = -Infinity; // time of the last frame [ms]
   private before = 0;
-  private lost = false; // its WebGL context
+  private lost = false; // whether its WebGL context is lost
 
-  /// Whether the newest frames are being drawn.
+  /// Whether the newest frames are drawn.
   get draws(): boolean { return !this.lost && this.before > 0 && performance.now() - this.before < kDrawn; }
 
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -56,7 +56,7 @@ export class Picture {
     view.setDark(dark);
     view.array.setDark(dark);
     view.setField("none");
-    // smoke and hand, not how they are rendered
+    // shows smoke and hand, not how they are rendered
     view.paths.group.visible = view.ruler.group.visible = false;
     return view;
   }

@@ -1,4 +1,4 @@
-/// Browsers take a page's graphics context away, hide the page, and have keyboards and wheels of all kinds.
+/// Browsers take a page's graphics context away, hide the page, and come with many kinds of keyboards and wheels.
 
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
@@ -20,7 +20,7 @@ afterAll(async () => {
   clean();
 });
 
-/// A page, once it has frames. @param prepare runs in it before its own scripts.
+/// Opens a page and waits for frames. @param prepare runs in it before its own scripts.
 async function open(prepare?: () => void): Promise<Page> {
   const page = await browser.newPage({ viewport: { width: 1100, height: 700 }, colorScheme: "light" });
   if (prepare !== undefined) await page.addInitScript(prepare);
@@ -45,7 +45,7 @@ const sign = (page: Page, words: RegExp) => expect.poll(async () => {
   return shown ? page.locator("#no-picture").textContent() : "no sign";
 }, kSoon).toMatch(words);
 
-/// Colours in the newest picture.
+/// Number of colours in the newest picture.
 const colours = (page: Page) => page.evaluate(() => new Promise<number>((resolve) => {
   const small = document.createElement("canvas");
   [small.width, small.height] = [160, 120];
@@ -59,7 +59,7 @@ const colours = (page: Page) => page.evaluate(() => new Promise<number>((resolve
   requestAnimationFrame(wait);
 }));
 
-/// All that the browser says of WebGL, and errors of any kind.
+/// Messages of the browser about WebGL, and errors of any kind.
 function graphicsComplaints(page: Page): string[] {
   const said: string[] = [];
   page.on("console", (message) => /webgl|context/i.test(message.text()) && !/ReadPixels/.test(message.text()) && said.push(message.text()));
@@ -68,7 +68,7 @@ function graphicsComplaints(page: Page): string[] {
 }
 
 describe("a picture whose graphics context is taken away", () => {
-  it("says so, and comes back with it, as often as that happens", async () => {
+  it("reports the loss and recovers with the context, any number of times", async () => {
     const page = await open();
     const said = graphicsComplaints(page);
     await newPictures(page);
@@ -91,7 +91,7 @@ describe("a picture whose graphics context is taken away", () => {
     await page.close();
   });
 
-  it("comes back however soon it was lost", async () => {
+  it("recovers even if the loss comes first", async () => {
     const page = await open(() => {
       const whole = HTMLCanvasElement.prototype.getContext as (this: HTMLCanvasElement, kind: string, options?: unknown) => RenderingContext | null;
       HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, kind: string, options?: unknown) {
@@ -112,7 +112,7 @@ describe("a picture whose graphics context is taken away", () => {
     await page.close();
   });
 
-  it("is left out without a context, and may come later", async () => {
+  it("is off without a context, and can be started later", async () => {
     const page = await open(() => {
       const whole = HTMLCanvasElement.prototype.getContext as (this: HTMLCanvasElement, kind: string, options?: unknown) => RenderingContext | null;
       HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, kind: string, options?: unknown) {
@@ -140,7 +140,7 @@ describe("keys", () => {
   beforeAll(async () => { page = await open(); });
   afterAll(() => page.close());
 
-  /// Presses a key as a keyboard of any layout has it, and lets go.
+  /// Presses and releases a key as a keyboard of any layout reports it.
   async function press(key: string, code: string, modifiers = 0): Promise<void> {
     const session = await page.context().newCDPSession(page);
     const text = [...key].length === 1 ? { text: key } : {};
@@ -176,7 +176,7 @@ describe("keys", () => {
     expect(await page.locator("#help").isVisible()).toBe(false);
   });
 
-  it("do nothing as commands, or when they are held", async () => {
+  it("are ignored with modifiers, and while they repeat", async () => {
     await press("m", "KeyM", 2); // Ctrl
     await press("b", "KeyB");
     await toggles("m", "KeyM");
@@ -192,7 +192,7 @@ describe("keys", () => {
     await until(page, () => window.prostm.frame!.hands[0]?.side === "right", 0, "a right hand");
   });
 
-  it("and wheels: a pinch goes nearer and leaves the hand", async () => {
+  it("and the wheel: a pinch zooms, and the hand stays", async () => {
     const box = (await page.locator("#view").boundingBox())!;
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     const height = async (): Promise<number> => {
@@ -212,9 +212,9 @@ describe("keys", () => {
   });
 });
 
-describe("a page that nobody sees", () => {
+describe("a hidden page", () => {
   const hand = async () => ((await program.numbers()).run as Json).page_hand as Json;
-  /// Whether the page's hand is ever in charge in so many readings, one a twentieth of a second.
+  /// Whether the page's hand is ever in charge in this many readings, 0.05 s apart.
   async function everInCharge(readings: number): Promise<boolean> {
     let ever = false;
     for (let i = 0; i < readings; ++i) {
@@ -227,13 +227,13 @@ describe("a page that nobody sees", () => {
     await page.locator("#page-hand").check();
     await expect.poll(async () => (await hand()).state, kSoon).toBe("held");
   }
-  /// As browsers tell pages of it.
+  /// Hides or shows a page as browsers report it.
   const setHidden = (page: Page, hidden: boolean) => page.evaluate((h) => {
     Object.defineProperty(document, "hidden", { configurable: true, get: () => h });
     document.dispatchEvent(new Event("visibilitychange"));
   }, hidden);
 
-  it("releases its hand at once, tells why, and takes it again when it is asked to", async () => {
+  it("releases its hand at once with the reason, and takes it again on request", async () => {
     const page = await open();
     await take(page);
     const { hidden } = await hand();
@@ -269,7 +269,7 @@ describe("a page that nobody sees", () => {
     await page.close();
   });
 
-  it("whose messages come late loses the hand once, and gets it back when they are steady", async () => {
+  it("with late messages loses the hand once, and gets it back when they are steady", async () => {
     const page = await browser.newPage({ viewport: { width: 1100, height: 700 } });
     let slow = false, last = 0;
     await page.routeWebSocket(/live/, (socket) => {

@@ -12,7 +12,7 @@ const file = join(folder, "tracker.json");
 const program = new Program(["--grid", "32", "--hand", tracker.address, "--tracker-file", file, "--seconds", "3600"]);
 let browser: Browser, page: Page, watch: Watch;
 
-// where the program believes the tracker to be at first, and where it is: poses X_DT [m]
+// the assumed pose of the tracker at first, and its true pose: X_DT [m]
 const believed = new Matrix4().set(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
 const trueTurn = new Quaternion().setFromAxisAngle(new Vector3(1, 2, 3).normalize(), 0.2).multiply(new Quaternion().setFromRotationMatrix(believed));
 const truly = new Matrix4().compose(new Vector3(0.02, 0.12, -0.01), trueTurn, new Vector3(1, 1, 1));
@@ -32,7 +32,7 @@ afterAll(async () => {
   clean();
 });
 
-/// Where the finger's tip is when it touches a mark, in the array's frame, and as the program sees it with a pose of the tracker [m].
+/// Position of the fingertip on a mark in the array's frame, and as the program sees it with a given pose of the tracker [m].
 const mark = async (i: number) => new Vector3(...(await page.evaluate((n) => window.prostm.state!.calibration!.marks[n]!.p_mm, i))).divideScalar(1000).add(new Vector3(0, 0, kFlesh));
 const seen = (tip: Vector3, pose: Matrix4) => tip.clone().applyMatrix4(truly.clone().invert()).applyMatrix4(pose);
 const tipIsAt = (place: Vector3, what: string) =>
@@ -45,7 +45,7 @@ const begin = async () => {
   await page.locator("#calibrate").click();
   await until(page, () => document.querySelector<HTMLDialogElement>("#calibration")!.open && document.querySelectorAll("#calibration-marks li").length === 4, 0, "the marks");
 };
-/// Puts the finger on a mark and takes it, with a click as long as people's.
+/// Puts the finger on a mark and takes it, with a click as long as a person's.
 async function take(i: number): Promise<void> {
   const tip = await mark(i);
   tracker.tip.copy(seen(tip, new Matrix4()));
@@ -67,7 +67,7 @@ const end = async () => {
 };
 
 describe("the calibration of a tracker", () => {
-  it("says why a mark or a pose cannot be taken", async () => {
+  it("explains why a mark or a pose cannot be taken", async () => {
     await begin();
     expect(await page.locator("#calibration-muted").textContent()).toBe("The array is muted for the calibration.");
     await expect.poll(() => program.printed).toContain("The array is muted for the calibration of the tracker.\n");
@@ -77,7 +77,7 @@ describe("the calibration of a tracker", () => {
     expect(await page.locator("#calibrate").isDisabled()).toBe(true);
   });
 
-  it("is gone back on with Cancel", async () => {
+  it("is reverted with Cancel", async () => {
     for (let i = 0; i < 4; ++i) await take(i);
     const tip = await mark(3);
     await solve();
@@ -88,7 +88,7 @@ describe("the calibration of a tracker", () => {
     await expect.poll(() => program.printed).toContain("The calibration is over: the array is not muted any more.\n");
   }, 120_000);
 
-  it("writes the pose that it finds, and keeps it", async () => {
+  it("writes and keeps the pose that it finds", async () => {
     await begin();
     for (let i = 0; i < 3; ++i) await take(i);
     const tip = await mark(2);

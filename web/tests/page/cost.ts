@@ -1,5 +1,5 @@
-/// Measures what a page costs the run that it shows, where the processor draws it: PROSTM=… npm run cost -- [ROUNDS]
-/// Runs without and with a page in turns; "open" counts from 10 s on, when the page has been opened and drawn.
+/// Measures how much a page slows down its run if the processor draws it: PROSTM=… npm run cost -- [ROUNDS]
+/// Alternates runs without and with a page; "open" counts from 10 s on, when the page has been opened and drawn.
 
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -53,7 +53,7 @@ const median = (values: number[]) => [...values].sort((a, b) => a - b)[Math.floo
 const without: Result[] = [], withPage: Result[] = [];
 try {
   for (let round = 0; round < rounds; ++round) {
-    // first the one, then the other
+    // alternates the order
     for (const shown of round % 2 === 0 ? [false, true] : [true, false]) (shown ? withPage : without).push(await measure(shown));
     console.log(`round ${round + 1} of ${rounds}`);
   }

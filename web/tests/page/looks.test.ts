@@ -20,7 +20,7 @@ afterAll(async () => {
 const kWidths = [390, 1024, 1440, 1920] as const;
 const kHeights: Record<number, number> = { 390: 844, 1024: 768, 1440: 900, 1920: 1080 };
 
-/// A page on the program, without the picture: it is not what is looked at here.
+/// Opens a page of the program without the picture, which is not under test here.
 async function open(theme: "light" | "dark", more = ""): Promise<Page> {
   const page = await browser.newPage({ viewport: { width: 1024, height: 768 }, colorScheme: theme });
   watches.push(new Watch(page));
@@ -29,13 +29,13 @@ async function open(theme: "light" | "dark", more = ""): Promise<Page> {
   return page;
 }
 
-/// Gives its window another width and waits until it is drawn so.
+/// Changes the width of the window and waits until the page is drawn.
 async function widen(page: Page, width: number): Promise<void> {
   await page.setViewportSize({ width, height: kHeights[width] ?? 900 });
   await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
 }
 
-/// Whatever is wider than the room that it has, and is cut off there.
+/// Elements that are wider than their space and cut off there.
 const clipped = (page: Page) => page.evaluate(() => {
   const texts = "button, label, .label, summary, h1, h2, h3, dt, dd, figcaption, .unit, option, select, th, td, li, p, output, kbd";
   const bad: string[] = [];
@@ -46,7 +46,7 @@ const clipped = (page: Page) => page.evaluate(() => {
     const what = `${element.tagName} ${element.id} “${(element.textContent ?? "").trim().slice(0, 30)}”`;
     if (box.left < -0.5 || box.right > window.innerWidth + 0.5) bad.push(`${what} beside the window`);
     if (element.scrollWidth > element.clientWidth + 1 && element.clientWidth > 0 && getComputedStyle(element).display !== "inline") bad.push(`${what} wider than its box`);
-    // cut off by something around it
+    // clipped by an element around it
     for (let outer = element.parentElement; outer !== null; outer = outer.parentElement) {
       const style = getComputedStyle(outer);
       if (style.overflowX === "visible") continue;
@@ -57,13 +57,13 @@ const clipped = (page: Page) => page.evaluate(() => {
   return bad;
 });
 
-/// By how much the page could be scrolled sideways [pixels].
+/// Distance by which the page can be scrolled sideways [pixels].
 const tooWide = (page: Page) => page.evaluate(() => {
   const root = document.getElementById("page")!;
   return Math.max(root.scrollWidth - root.clientWidth, document.documentElement.scrollWidth - window.innerWidth);
 });
 
-/// Texts that are too faint on what is behind them, WCAG 2.2: 4.5, and 3 for large type.
+/// Texts with too little contrast to their background, WCAG 2.2: 4.5, and 3 for large type.
 const faint = (page: Page) => page.evaluate(() => {
   const context = document.createElement("canvas").getContext("2d", { willReadFrequently: true })!;
   const rgba = (colour: string): number[] => {
@@ -88,7 +88,7 @@ const faint = (page: Page) => page.evaluate(() => {
   for (let node = walker.nextNode(); node !== null; node = walker.nextNode()) {
     const element = node.parentElement!;
     if ((node.textContent ?? "").trim() === "" || !element.checkVisibility({ opacityProperty: true } as never) || element.closest("script, noscript, .unseen")) continue;
-    // what can do nothing may be faint, and what stands on the picture has a ground of its own
+    // disabled elements may be faint, and texts on the picture have their own background
     if (element.closest(":disabled, .disabled, #labels") || element.closest("label")?.control?.matches(":disabled")) continue;
     const style = getComputedStyle(element), back = ground(element);
     const [a, b] = [luminance(over(rgba(style.color), back)), luminance(back)].sort((p, q) => q - p);
@@ -106,7 +106,7 @@ describe.each(["light", "dark"] as const)("a page in the %s theme", (theme) => {
   });
   afterAll(() => page.close());
 
-  it("leaves room for the planes where there is no picture above them", async () => {
+  it("leaves room for the planes if there is no picture above them", async () => {
     await until(page, () => document.getElementById("picture")!.dataset.drawn === "false", 0, "no picture");
     const plane = (await page.locator('canvas[data-kind="target"]').boundingBox())!;
     expect(plane.y + plane.height).toBeLessThanOrEqual(768);
@@ -118,8 +118,8 @@ describe.each(["light", "dark"] as const)("a page in the %s theme", (theme) => {
     expect(await clipped(page)).toEqual([]);
     expect(await faint(page)).toEqual([]);
   });
-  // leaves the help open: nothing comes after it
-  it("can be read while it is muted, and in its help", async () => {
+  // leaves the help open: no test follows
+  it("is legible while muted, and in its help", async () => {
     await widen(page, 1024);
     await page.locator("#mute").click();
     await until(page, () => document.getElementById("output-word")!.textContent === "Muted", 0, "muted");
@@ -144,18 +144,18 @@ describe("large type", () => {
     expect(await page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize))).toBeGreaterThanOrEqual(18);
     expect(await clipped(page)).toEqual([]);
     expect(await tooWide(page)).toBeLessThanOrEqual(0);
-    // the planes begin at the same height: each has its name in one line
+    // the planes begin at the same height: each name fits in one line
     const names = await page.locator("figcaption").evaluateAll((all) => all.map((e) => e.getBoundingClientRect().height));
     expect(new Set(names).size).toBe(1);
   });
-  it("leaves room for the button beside the longest words on the output", async () => {
+  it("leaves room for the button next to the longest words on the output", async () => {
     await widen(page, 390);
     await page.locator("#mute").click();
     await until(page, () => document.getElementById("output-why")!.textContent === "by you or another page", 0, "muted");
     expect(await clipped(page)).toEqual([]);
     await page.locator("#mute").click();
   });
-  // changes the page's words: nothing comes after it
+  // changes the page's words: no test follows
   it.each(kWidths)("has room for all that is said in place of the picture, %i pixels wide", async (width) => {
     await widen(page, width);
     const cut = await page.evaluate(() => {
@@ -170,11 +170,11 @@ describe("large type", () => {
   });
 });
 
-describe("the browser's own type", () => {
-  it("twice as large, cuts nothing off", async () => {
+describe("the browser's own type size", () => {
+  it("cuts nothing off when doubled", async () => {
     const page = await open("light");
     await widen(page, 1440);
-    // as a browser does whose own type is 32 pixels high
+    // as in a browser whose own type is 32 pixels high
     await page.evaluate(() => document.documentElement.style.setProperty("font-size", "28px", "important"));
     await page.waitForTimeout(300);
     expect(await clipped(page)).toEqual([]);
@@ -183,7 +183,7 @@ describe("the browser's own type", () => {
   });
 });
 
-describe("what is read aloud", () => {
+describe("the page for screen readers", () => {
   let page: Page;
   beforeAll(async () => {
     page = await open("light");
@@ -215,5 +215,5 @@ describe("what is read aloud", () => {
 });
 
 describe("all pages", () => {
-  it("complained of nothing", () => expect(watches.flatMap((w) => w.complaints)).toEqual([]));
+  it("report no errors", () => expect(watches.flatMap((w) => w.complaints)).toEqual([]));
 });

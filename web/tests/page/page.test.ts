@@ -20,13 +20,13 @@ afterAll(async () => {
   clean();
 });
 
-// a frame may take long where a picture is drawn in software
+// a frame may take long if the picture is drawn in software
 const kSoon = { timeout: 30_000, interval: 100 };
-// every group open, and the picture drawn however long that takes
+// every group open, and the picture drawn however long it takes
 const kHash = "/#folded=&picture=on";
 
 const frameCount = () => page.evaluate(() => window.prostm.frames);
-/// Frames go on from here.
+/// Waits until frames arrive after this point.
 async function newFrames(of: Page = page, count = 2): Promise<void> {
   const now = await of.evaluate(() => window.prostm.frames);
   await until(of, (n) => window.prostm.frames >= n, now + count, "new frames");
@@ -38,7 +38,7 @@ const becomes = (id: string, wanted: string | number | boolean) =>
     return typeof now === "number" && typeof wanted === "number" ? Math.abs(now - wanted) < 1e-9 : now === wanted;
   }, { id, wanted }, `${id} becomes ${wanted}`);
 
-/// Turns a control as somebody with a keyboard or a mouse would.
+/// Changes a control as a user with a keyboard or a mouse would.
 async function turn(id: string, to: string | number | boolean): Promise<void> {
   const field = page.locator(`[data-control="${id}"]`);
   if (typeof to === "number") {
@@ -54,14 +54,14 @@ async function turn(id: string, to: string | number | boolean): Promise<void> {
   await becomes(id, to);
 }
 
-describe("a page that is opened", () => {
-  it("soon shows a scene that moves", async () => {
+describe("an opened page", () => {
+  it("soon shows a moving scene", async () => {
     const start = Date.now();
     await page.goto(program.address + kHash);
     await until(page, () => (window.prostm?.frames ?? 0) >= 3 && window.prostm.pictures >= 2 && (window.prostm.frame?.hands.length ?? 0) > 0, 0, "frames and pictures");
     console.log(`the first pictures came ${Date.now() - start} ms after opening`);
 
-    // what is drawn: many colours, skin among them, and not twice the same
+    // content of the picture: many colours, skin among them, and not the same twice
     const look = () => page.evaluate(() => {
       const view = document.getElementById("view") as HTMLCanvasElement;
       const small = document.createElement("canvas");
@@ -88,7 +88,7 @@ describe("a page that is opened", () => {
     expect(changed).toBeGreaterThan(100);
   });
 
-  it("has planes with fields in them, and strips with lines", async () => {
+  it("has planes with fields, and strips with lines", async () => {
     for (const kind of ["target", "rendered", "difference"]) {
       await until(page, (k) => {
         const canvas = document.querySelector<HTMLCanvasElement>(`canvas[data-kind=${k}]`)!;
@@ -101,11 +101,11 @@ describe("a page that is opened", () => {
 });
 
 describe("numbers", () => {
-  it("on a page that pauses are those of the program", async () => {
+  it("on a paused page are those of the program", async () => {
     await page.locator("#play").click();
     await until(page, () => window.prostm.state?.transport.playing === false && window.prostm.frame?.run.paused === true, 0, "a pause");
 
-    // the same frame, here and there
+    // the same frame on both sides
     let theirs: Json = {}, ours: { run: Record<string, string>; numbers: [string, string][] } = { run: {}, numbers: [] };
     await expect.poll(async () => {
       theirs = await program.numbers();
@@ -126,7 +126,7 @@ describe("numbers", () => {
         expect(text, name).toBe("–");
         continue;
       }
-      // a page writes as many digits as it shows, six in the table
+      // a page writes the digits that it shows, six in the table
       const digits = (text.split(".")[1] ?? "").length;
       expect(Math.abs(Number(text) - Number(there)), name).toBeLessThanOrEqual(Math.max(0.5001 * 10 ** -digits, 1e-5 * Math.abs(Number(there))));
       ++compared;
@@ -135,7 +135,7 @@ describe("numbers", () => {
     expect(compared).toBeGreaterThan(25);
   });
 
-  it("go on by one plan with Step, and stand still without", async () => {
+  it("advance by one plan with Step, and stop without", async () => {
     const step = async () => {
       const before = await page.evaluate(() => window.prostm.frame!.run);
       await page.locator("#step").click();
@@ -155,7 +155,7 @@ describe("numbers", () => {
     expect(await page.evaluate(() => window.prostm.frame!.run.time)).toBe(still);
   });
 
-  it("follow the place in the recording", async () => {
+  it("follow the position in the recording", async () => {
     const scrub = page.locator("#scrub");
     await scrub.focus();
     for (const [key, place] of [["Home", 0], ["End", 6]] as const) {
@@ -170,7 +170,7 @@ describe("numbers", () => {
 });
 
 describe("controls", () => {
-  it("each say to the program what they show, and are answered", async () => {
+  it("each send the value shown to the program, which answers", async () => {
     const controls = await page.evaluate(() => window.prostm.state!.controls);
     expect(controls.length).toBeGreaterThan(8);
     for (const control of controls.filter((c) => c.enabled && c.id !== "source")) {
@@ -186,13 +186,13 @@ describe("controls", () => {
     }
   }, 300_000);
 
-  it("say why when something cannot be done", async () => {
+  it("explain rejected values", async () => {
     const speed = await value("speed");
     await page.locator('[data-control="speed"] input[type=number]').fill("9999");
     await page.locator('[data-control="speed"] input[type=number]').press("Enter");
     await until(page, () => (document.querySelector('[data-control="speed"] .error')?.textContent ?? "").includes("between"), 0, "a sentence beside the control");
     expect(await value("speed")).toBe(speed);
-    // the box says again what holds
+    // the box shows the value in force again
     expect(await page.locator('[data-control="speed"] input[type=number]').inputValue()).toBe(String(speed));
     expect(await page.locator('[data-control="speed"] input[type=range]').inputValue()).toBe(String(speed));
     await turn("speed", Number(speed) - 1);
@@ -200,7 +200,7 @@ describe("controls", () => {
     await turn("speed", Number(speed));
   });
 
-  it("whose box is emptied go back to what holds, and say so", async () => {
+  it("restore the value in force when their box is emptied, and report it", async () => {
     const box = page.locator('[data-control="paths"] input[type=number]');
     await box.fill("");
     await box.press("Enter");
@@ -229,7 +229,7 @@ describe("controls", () => {
     await turn("method", "pro-stm");
     await planHas(4, "path");
   });
-  it("bring the paths in step by what is felt, until the paper's presets turn it off", async () => {
+  it("bring the paths in step with the felt weight, until the paper's presets turn it off", async () => {
     const inStep = (wanted: boolean) =>
       until(page, (w) => window.prostm.frame!.plan.length > 0 && window.prostm.frame!.plan.every((p) => p.loop > 0 === w), wanted, `paths in step: ${wanted}`);
     const works = (id: string) => page.evaluate((i) => window.prostm.state!.controls.find((c) => c.id === i)!.enabled, id);
@@ -243,7 +243,7 @@ describe("controls", () => {
     expect(await works("felt_weight")).toBe(false);
     await turn("preset", "best");
   });
-  it("make foci late by what is felt", async () => {
+  it("delay foci with the felt weight", async () => {
     await turn("method", "am");
     await turn("am_felt_weight", 0.9);
     await until(page, () => window.prostm.frame!.plan.some((p) => p.kind === "focus" && p.phase > 0), 0, "foci with phases");
@@ -258,13 +258,13 @@ describe("controls", () => {
     await turn("speed", 7);
     await until(page, () => window.prostm.frame!.plan.some((p) => Math.abs(p.speed - 7) < 0.01), 0, "paths at 7 m/s");
   });
-  it("change the width that is planned with: all of the target lies near a path when it is wide", async () => {
+  it("change the width used for planning: with a wide one all of the target lies near a path", async () => {
     const sigma = Number(await value("sigma"));
     await turn("sigma", 20);
     await until(page, () => (window.prostm.frame!.numbers[19] ?? 0) > 0.97, 0, "coverage near 1");
     await turn("sigma", sigma);
   });
-  it("change the gain: the same field from paths of greater pressure", async () => {
+  it("change the gain: the same field from paths with more pressure", async () => {
     const ratio = () => page.evaluate(() => {
       const frame = window.prostm.frame!;
       return Math.max(0, ...frame.plan.flatMap((p) => Array.from({ length: p.count }, (_, i) => p.points[6 * i + 2]!))) / (frame.numbers[24] || 1);
@@ -285,8 +285,8 @@ describe("controls", () => {
     await turn("scene", "four-plumes");
     await expect.poll(scale, kSoon).toBeCloseTo(thin, 3);
   });
-  it("turn the grid down where it is too fine for the machine", async () => {
-    await turn("scene", "ring"); // without a stimulus every coarser grid will do
+  it("suggest a coarser grid if it is too fine for the machine", async () => {
+    await turn("scene", "ring"); // without a stimulus every coarser grid is allowed
     await turn("grid", 160);
     await page.locator("#turn-down").waitFor({ timeout: 30000 });
     expect(await page.locator("#rates").textContent()).toMatch(/^Rates not held: smoke .* of 50 Hz/);
@@ -298,7 +298,7 @@ describe("controls", () => {
     await expect.poll(() => page.locator("#missed").isHidden(), { timeout: 30000 }).toBe(true);
     await turn("scene", "four-plumes");
   });
-  it("change what the emitter blows: without it the pressure goes away", async () => {
+  it("change the jets: without them the pressure disappears", async () => {
     const pressure = () => page.evaluate(() => window.prostm.frame!.numbers[24]!);
     let before = 0;
     await expect.poll(async () => (before = await pressure()), kSoon).toBeGreaterThan(0.07);
@@ -306,7 +306,7 @@ describe("controls", () => {
     await expect.poll(pressure, kSoon).toBeLessThan(0.5 * before);
     await turn("jet_speed", 1);
   });
-  it("change what is on the skin and how fast focal points go, in the page alone", async () => {
+  it("change the field on the skin and the speed of focal points, in the page alone", async () => {
     for (const mode of ["target", "difference", "none", "rendered"]) {
       await page.locator(`label[for="skin-${mode}"]`).click();
       expect(await page.locator(`#skin-${mode}`).isChecked()).toBe(true);
@@ -327,7 +327,7 @@ describe("the page's hand", () => {
       return window.prostm.frame!.run.pageHand && hand !== undefined && w.every((v, i) => Math.abs(1000 * hand.joints[i]! - v) < 1.5);
     }, wanted, what);
 
-  it("takes over, goes where keys send it, and lets go", async () => {
+  it("replaces the source, follows keys, and is released", async () => {
     await page.locator("#page-hand").check();
     await near([0, 0, 190], "the hand in the middle");
     expect(await page.evaluate(() => document.activeElement?.id)).toBe("view");
@@ -362,7 +362,7 @@ describe("the page's hand", () => {
 });
 
 describe("two pages", () => {
-  it("both get frames, and see what the other turns", async () => {
+  it("both get frames, and see each other's changes", async () => {
     const other = await browser.newPage({ viewport: { width: 1280, height: 720 }, colorScheme: "dark" });
     const seen = new Watch(other);
     await other.goto(program.address + kHash);
@@ -374,7 +374,7 @@ describe("two pages", () => {
     expect(await frameCount()).toBeGreaterThan(before);
     await turn("paths", 4);
 
-    // the hand goes from page to page, and the page that loses it is told
+    // the hand passes from page to page, and the page that loses it is notified
     await page.locator("#page-hand").check();
     await until(other, () => document.getElementById("source")!.textContent === "hand from another page", 0, "the other page's hand");
     await expect.poll(() => page.locator("#source").textContent(), kSoon).toBe("hand from this page");
@@ -390,8 +390,8 @@ describe("two pages", () => {
   });
 });
 
-describe("a page far from its program", () => {
-  it("keeps what was just set when a state comes that left the program before", async () => {
+describe("a page with a slow connection", () => {
+  it("keeps a value just set when an earlier state arrives", async () => {
     const far = await browser.newPage({ viewport: { width: 1280, height: 720 } });
     let state = "", delayed = 0;
     await far.routeWebSocket(/.*/, (socket) => {
@@ -422,7 +422,7 @@ describe("a page far from its program", () => {
 });
 
 describe("looks", () => {
-  /// Contrast of WCAG 2.2 between two colours that the page has.
+  /// Contrast by WCAG 2.2 between two colours of the page.
   const contrast = (front: string, back: string) => page.evaluate(([f, b]) => {
     const context = document.createElement("canvas").getContext("2d", { willReadFrequently: true })!;
     const luminance = (name: string) => {
@@ -452,7 +452,7 @@ describe("looks", () => {
     await page.locator("#large-type").uncheck();
   });
 
-  it("leave nothing that a keyboard cannot reach, and show where it is", async () => {
+  it("make everything reachable by keyboard, with visible focus", async () => {
     const wanted = await page.evaluate(() => {
       const shown = (e: HTMLElement) => e.checkVisibility() && !(e as HTMLInputElement).disabled;
       const all = [...document.querySelectorAll<HTMLElement>("button, select, summary, canvas[tabindex], input:not([type=radio])")].filter(shown).map((e) => e.id || e.outerHTML.slice(0, 80));
@@ -480,8 +480,8 @@ describe("looks", () => {
   });
 });
 
-describe("pictures of the page", () => {
-  it("have their texts beside each other, those of the strips among them", async () => {
+describe("screenshots of the page", () => {
+  it("have their texts in place, including those of the strips", async () => {
     const texts = await page.evaluate(() => {
       const drawn: { text: string; left: number; right: number; y: number }[] = [];
       const whole = CanvasRenderingContext2D.prototype.fillText;
@@ -504,7 +504,7 @@ describe("pictures of the page", () => {
     expect(readFileSync(file).subarray(1, 4).toString()).toBe("PNG");
     expect(statSync(file).size).toBeGreaterThan(50_000);
   });
-  it("can be filmed, where the browser can", async () => {
+  it("can be recorded as films, if the browser can", async () => {
     const film = page.locator("#film");
     if (await film.isDisabled()) {
       expect(await film.getAttribute("title")).toContain("cannot record");
@@ -518,8 +518,8 @@ describe("pictures of the page", () => {
   });
 });
 
-describe("all this time", () => {
-  it("the page asked nobody else, read every frame, and complained of nothing", async () => {
+describe("during all tests", () => {
+  it("the page contacted no other host, read every frame, and reported no errors", async () => {
     expect(watch.requests.length).toBeGreaterThan(3);
     for (const address of watch.requests.filter((a) => !a.startsWith("blob:"))) expect(new URL(address).host).toBe(new URL(program.address).host);
     expect(await page.evaluate(() => window.prostm.refused)).toBe(0);
@@ -528,7 +528,7 @@ describe("all this time", () => {
 });
 
 describe("a program that dies under an open page", () => {
-  it("is missed, and found again when it is back", async () => {
+  it("is reported, and reconnected when it is back", async () => {
     const { port } = program;
     await program.stop();
     await until(page, () => document.documentElement.dataset.link === "lost" && (document.getElementById("link")?.textContent ?? "").includes("does not answer"), 0, "a sentence that it is gone");

@@ -1,4 +1,4 @@
-/// Takes the pictures of the page for README and docs from the program itself: PROSTM=… npm run pictures -- FOLDER
+/// Takes the screenshots for README and docs from the program itself: PROSTM=… npm run pictures -- FOLDER
 
 import { join } from "node:path";
 import "../../src/inspection";
@@ -43,8 +43,8 @@ try {
       // without the picture the run keeps its rates meanwhile
       await page.goto(`${program.address}/#picture=off`);
       await until(page, () => (window.prostm?.frame?.hands.length ?? 0) > 0, 0, "a hand");
-      // half a minute, so that the strips are full; then hold the next moment at which the open hand is well in the
-      // smoke, or the gate passes
+      // half a minute, so that the strips are full; then stop at the next moment with the open hand well in the
+      // smoke, or with the gate passed
       await page.waitForTimeout(32_000);
       await until(page, (study) => {
         const { plan, numbers, hands, gate } = window.prostm.frame!;

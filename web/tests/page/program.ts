@@ -1,4 +1,4 @@
-/// The program under test, a recording for it, and pages on it.
+/// The program under test, a recording for it, and pages of it.
 
 import { spawn, type ChildProcess } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
@@ -12,7 +12,7 @@ export const kProgram = process.env.PROSTM ?? "";
 export const kBrowser = process.env.CHROMIUM ?? "/usr/bin/chromium";
 export const folder = mkdtempSync(join(tmpdir(), "prostm-page-"));
 
-/// A hand that comes down over the array and tilts, as a recording in the frame of a tracker: (x, y, z) of D is (x, z, −y) there.
+/// A hand that descends over the array and tilts, recorded in a tracker's frame: (x, y, z) of D is (x, z, −y) there.
 export function writeRecording(seconds: number): string {
   const file = join(folder, "hand.hands.jsonl");
   const toTracker = new Matrix4().set(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
@@ -34,7 +34,7 @@ export class Program {
 
   constructor(private readonly options: string[]) {}
 
-  /// Starts it, and waits until it says where its page is.
+  /// Starts the program, and waits until it prints the page's address.
   async start(port = 0): Promise<void> {
     const child = spawn(kProgram, ["run", "--view", "--view-port", String(port), ...this.options], { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
     this.child = child;
@@ -51,11 +51,11 @@ export class Program {
       child.on("exit", () => reject(new Error(`the program ended before it said where its page is:\n${this.output}`)));
     });
   }
-  /// Its output so far.
+  /// The program's output so far.
   get printed(): string { return this.output; }
   get port(): number { return Number(new URL(this.address).port); }
 
-  /// Waits until it has ended by itself.
+  /// Waits until the program ends by itself.
   async ended(): Promise<void> {
     const child = this.child;
     if (child !== null && child.exitCode === null && child.signalCode === null) await new Promise((resolve) => child.once("exit", resolve));
@@ -80,7 +80,7 @@ export async function openBrowser(): Promise<Browser> {
   });
 }
 
-/// The faults of a page.
+/// The errors that a page reports.
 export class Watch {
   readonly complaints: string[] = [];
   readonly requests: string[] = [];

@@ -4,7 +4,7 @@ import "../../src/inspection";
 import { kNumbers } from "../../src/wire";
 import { clean, openBrowser, Program, until, Watch } from "./program";
 
-// no hand but the page's: it is there when a test wants it
+// no hand except the page's, which a test switches on
 const program = new Program(["--grid", "32", "--scene", "four-plumes", "--hand", "page", "--seconds", "3600"]);
 let browser: Browser, page: Page, watch: Watch;
 
@@ -28,7 +28,7 @@ const says = (id: string, words: string) =>
   until(page, ({ id, words }) => (document.getElementById(id)?.textContent ?? "").includes(words), { id, words }, `#${id} says ${words}`);
 
 describe("a page without a hand", () => {
-  it("says so over the picture and the planes, and has no latency", async () => {
+  it("reports it over the picture and the planes, and has no latency", async () => {
     await page.locator("#no-hand").waitFor();
     expect(await text("no-hand-advice")).toContain("Use my mouse as the hand");
     expect(await page.locator("#no-hand-planes").isVisible()).toBe(true);
@@ -44,7 +44,7 @@ describe("a page with a hand", () => {
     await until(page, () => (window.prostm.frame?.plan.length ?? 0) > 0 && window.prostm.frame!.numbers[24]! > 0.06, 0, "pressure on the page's hand");
   });
 
-  it("names what is drawn", async () => {
+  it("names the items drawn", async () => {
     const names = async () => (await page.locator("#things li:visible").allTextContents()).join("; ");
     await expect.poll(names).toMatch(/array.*box of the smoke, 360 mm wide.*hand, 1\d\d mm long.*reconstruction on the skin.*path.*focal point.*height.*under the palm/);
     await page.locator('label[for="skin-difference"]').click();
@@ -55,7 +55,7 @@ describe("a page with a hand", () => {
     await expect.poll(labels).toContain("palm 190 mm");
   });
 
-  it("says what keeps the hand from the scene's stimulus", async () => {
+  it("explains why the hand does not receive the scene's stimulus", async () => {
     await says("gate-word", "Stimulus");
     await page.locator("#view").focus();
     for (let i = 0; i < 40; ++i) await page.keyboard.press("c");
@@ -77,12 +77,12 @@ describe("a page with a hand", () => {
     await expect.poll(async () => (await program.numbers() as { numbers: { intensity: number } }).numbers.intensity).toBeGreaterThan(0);
   });
 
-  it("says what pressure is under the pointer, in the planes and on the skin", async () => {
+  it("shows the pressure under the pointer, in the planes and on the skin", async () => {
     const box = (await page.locator('canvas[data-kind="rendered"]').boundingBox())!;
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await says("hover", "Pa");
     expect(await text("hover")).toMatch(/^target \d+(\.\d+)? Pa\nreconstruction \d+(\.\d+)? Pa\ndifference [−+]\d+(\.\d+)? Pa\nx −?\d+, y −?\d+ mm, [12]\d\d mm over the array$/);
-    // from below, the palm is in the middle
+    // seen from below, the palm is in the middle
     await page.locator('[data-view="below"]').click();
     await page.waitForTimeout(1500);
     const view = (await page.locator("#view").boundingBox())!;
@@ -99,7 +99,7 @@ describe("a page with a hand", () => {
     await page.locator('[data-view="home"]').click();
   });
 
-  it("locks the scale of colours", async () => {
+  it("locks the colour scale", async () => {
     const end = await text("lock-scale");
     expect(end).toMatch(/^Lock at [\d.]+ Pa$/);
     await page.locator("#lock-scale").click();
@@ -110,7 +110,7 @@ describe("a page with a hand", () => {
     expect(await text("lock-scale")).toMatch(/^Lock at/);
   });
 
-  it("shows all values at a time under the pointer, freezes, and zooms in time", async () => {
+  it("shows all values at the pointer's time, freezes, and zooms in time", async () => {
     await page.waitForTimeout(2000);
     const plot = (await page.locator('[data-strip="latency"] .u-over').boundingBox())!;
     await page.mouse.move(plot.x + plot.width * 0.98, plot.y + plot.height / 2);
@@ -133,7 +133,7 @@ describe("a page with a hand", () => {
     }
   });
 
-  it("explains itself on ?", async () => {
+  it("shows its help on ?", async () => {
     await page.keyboard.press("?");
     expect(await page.locator("#help").isVisible()).toBe(true);
     await page.keyboard.press("Escape");
@@ -143,9 +143,9 @@ describe("a page with a hand", () => {
     expect(await page.locator("#help").isVisible()).toBe(false);
   });
 
-  it("keeps the page's hand while Esc is for the help, and mutes from there", async () => {
+  it("keeps the page's hand while Esc closes the help, and mutes from there", async () => {
     await page.keyboard.press("?");
-    // the text takes no focus: the page's body has it then
+    // the text does not take the focus: the page's body has it then
     await page.locator("#help p").click();
     await page.keyboard.press("m");
     await page.keyboard.press("Escape");
@@ -156,7 +156,7 @@ describe("a page with a hand", () => {
     await page.waitForFunction(() => window.prostm.frame!.run.pageHand && !window.prostm.frame!.run.muted);
   });
 
-  it("names the target and the reconstruction by one word each, wherever they are", async () => {
+  it("uses one word each for the target and the reconstruction", async () => {
     expect(await page.locator("#planes figcaption").allTextContents()).toEqual(["Target", "Reconstruction", "Difference"]);
     expect(await page.locator("#skin-field label").allTextContents()).toEqual(["Target", "Reconstruction", "Difference", "None"]);
     await expect.poll(() => page.locator("#legend b").textContent()).toBe("Reconstruction");
@@ -187,7 +187,7 @@ describe("a page that is touched", () => {
   });
   afterAll(() => touched.context().close());
   const note = () => touched.locator("#hover");
-  /// Taps the palm, which is in the middle when it is seen from below.
+  /// Taps the palm, which is in the middle when seen from below.
   const tapped = async () => {
     const view = (await touched.locator("#view").boundingBox())!;
     const x = view.x + view.width / 2, middle = view.y + view.height / 2;
@@ -204,21 +204,21 @@ describe("a page that is touched", () => {
     return at!;
   };
 
-  it("says what pressure is where the hand is tapped, until the next touch", async () => {
+  it("shows the pressure at a tap on the hand, until the next touch", async () => {
     await tappedPalm();
     await touched.waitForTimeout(1000);
     expect(await note().textContent()).toMatch(/^target .* Pa\nreconstruction .* Pa\ndifference .* Pa\nx −?\d+, y −?\d+ mm, 1\d\d mm over the array$/);
     await touched.locator("#about").tap();
     expect(await note().isHidden()).toBe(true);
   });
-  it("turns the view by a drag, and says nothing", async () => {
+  it("turns the view with a drag, without a note", async () => {
     const at: { x: number; y: number } = await tappedPalm();
     const before = await touched.evaluate(() => location.hash);
     await swipe(touched, at.x, at.y, 40);
     expect(await note().isHidden()).toBe(true);
     await expect.poll(() => touched.evaluate(() => location.hash)).not.toBe(before);
   });
-  it("says what is under a tap on a plane and on a strip", async () => {
+  it("shows the values at a tap on a plane and on a strip", async () => {
     await touched.locator('canvas[data-kind="target"]').tap();
     await expect.poll(() => note().textContent()).toMatch(/^target .* mm over the array$/s);
     expect(await note().isVisible()).toBe(true);
@@ -226,10 +226,10 @@ describe("a page that is touched", () => {
     expect(await note().isHidden()).toBe(true);
     await expect.poll(() => touched.locator("#strips-at").textContent()).toMatch(/^values \d+\.\d s ago$/);
   });
-  it("complained of nothing", () => expect(seen.complaints).toEqual([]));
+  it("reports no errors", () => expect(seen.complaints).toEqual([]));
 });
 
-/// Puts a number in a frame of the program (docs/reference/wire.md).
+/// Changes a number in a frame of the program (docs/reference/wire.md).
 function withNumber(frame: Buffer, place: number, value: number): Buffer {
   const made = Buffer.from(frame);
   for (let at = 16; at + 8 <= made.length; at += 8 + 8 * Math.ceil(made.readUInt32LE(at + 4) / 8)) {
@@ -238,8 +238,8 @@ function withNumber(frame: Buffer, place: number, value: number): Buffer {
   return made;
 }
 
-describe("a page that is told of negative quality", () => {
-  it("marks it at the foot of the strip", async () => {
+describe("a page that receives a negative quality", () => {
+  it("marks it at the bottom of the strip", async () => {
     const other = await browser.newPage({ colorScheme: "light" });
     let skill = 0.3;
     await other.routeWebSocket(/live/, (socket) => {
@@ -247,7 +247,7 @@ describe("a page that is told of negative quality", () => {
       server.onMessage((m) => socket.send(typeof m === "string" ? m : withNumber(m, kNumbers.indexOf("skill_8"), skill)));
     });
     await other.goto(`${program.address}/#picture=off`);
-    // pixels in the marks' colour under the axis's 0, where no line is drawn
+    // pixels in the marks' colour below the axis's 0, where no line is drawn
     const marked = () => other.evaluate(() => {
       const canvas = document.querySelector<HTMLCanvasElement>('[data-strip="quality"] canvas')!, box = canvas.getBoundingClientRect();
       const plot = document.querySelector('[data-strip="quality"] .u-over')!.getBoundingClientRect(), ratio = canvas.width / box.width;
@@ -274,7 +274,7 @@ describe("a page's state", () => {
   };
   const clipboard = () => page.evaluate(() => navigator.clipboard.readText());
 
-  it("stands in its address, and is asked about before a link changes a run", async () => {
+  it("is kept in its address, and confirmed before a link changes a run", async () => {
     await set("paths", 2);
     await page.locator('[data-view="side"]').click();
     await expect.poll(() => page.evaluate(() => location.hash)).toMatch(/set\.paths=2.*eye=90,3,780/);
@@ -294,7 +294,7 @@ describe("a page's state", () => {
     await other.close();
   });
 
-  it("can be taken as a command line and as a settings file, and taken back", async () => {
+  it("can be copied as a command line and as a settings file, and reset", async () => {
     await set("speed", 5);
     await page.locator("#copy-command").click();
     await says("notice", "Copied");
@@ -307,7 +307,7 @@ describe("a page's state", () => {
     await expect.poll(() => page.evaluate(() => location.hash)).not.toContain("set.");
   });
 
-  it("keeps which groups are folded", async () => {
+  it("includes which groups are folded", async () => {
     await page.locator('[data-fold="Plan"] > summary').click();
     await expect.poll(() => page.evaluate(() => location.hash)).toContain("folded=Plan");
     await page.reload();
@@ -317,8 +317,8 @@ describe("a page's state", () => {
   });
 });
 
-describe("a page that may not draw the picture", () => {
-  it("shows the planes alone, and says so", async () => {
+describe("a page with the picture switched off", () => {
+  it("shows only the planes, and says so", async () => {
     await page.locator("#picture-mode").selectOption("off");
     await page.locator("#no-picture").waitFor();
     const drawn = await page.evaluate(() => window.prostm.pictures), frames = await page.evaluate(() => window.prostm.frames);
@@ -328,5 +328,5 @@ describe("a page that may not draw the picture", () => {
     await until(page, (n) => window.prostm.pictures > n, drawn, "pictures again");
     expect(await page.locator("#no-picture").isHidden()).toBe(true);
   });
-  it("complained of nothing", () => expect(watch.complaints).toEqual([]));
+  it("reports no errors", () => expect(watch.complaints).toEqual([]));
 });

@@ -4,7 +4,7 @@ import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { clean, openBrowser, Watch, type Json } from "./program";
 import { comes, protocol, Study } from "./study";
 
-/// All that the program sends to a page.
+/// All data that the program sends to a page.
 class Traffic {
   readonly texts: string[] = [];
   readonly sizes: number[] = [];
@@ -43,7 +43,7 @@ describe("a session of a study", () => {
     expect((await fetch(`${study.url}numbers.json`)).status).toBe(403);
   });
 
-  it("asks on both pages, and takes answers from the experimenter's keys and buttons", async () => {
+  it("asks on both pages, and accepts answers from the experimenter's keys and buttons", async () => {
     await experimenter.keyboard.press("Enter");
     await comes(experimenter, "ready");
     await experimenter.keyboard.press("Enter");
@@ -55,7 +55,7 @@ describe("a session of a study", () => {
       expect(await participant.locator("#question").textContent()).toBe(asked);
       expect(await participant.locator("#drawing circle").count()).toBe(asked === "Is there one plume?" ? 1 : 4);
       expect(await participant.locator("#answers").isVisible()).toBe(false);
-      await participant.keyboard.press("y"); // not theirs to give
+      await participant.keyboard.press("y"); // the participant may not answer
       if (i % 2 === 0) await experimenter.keyboard.press(i === 0 ? "y" : "PageUp");
       else await experimenter.locator(i === 1 ? "#first" : "#second").click();
       await experimenter.waitForFunction((done) => document.querySelector("progress")!.value === done, i + 1);
@@ -68,7 +68,7 @@ describe("a session of a study", () => {
     expect(study.lines().filter((line) => line.kind === "correction").map((line) => [line.trial, line.answer])).toEqual([[4, 1]]);
   });
 
-  it("sends the participant nothing that tells the answer or the method", () => {
+  it("sends the participant nothing that reveals the answer or the method", () => {
     expect(study.trials().length).toBe(4);
     for (const text of traffic.texts) {
       expect(text).not.toMatch(/"(method|scene|condition|correct|gate|stimulus)"|pro-stm|\bam\b/);
@@ -125,7 +125,7 @@ describe("a study with noise", () => {
 });
 
 describe("participants who answer themselves", () => {
-  it("do so with consent, words about them, keys and feedback where the protocol says so", async () => {
+  it("do so with consent, questions about them, keys and feedback if the protocol has them", async () => {
     const study = new Study(protocol('[study]\nconsent = "I take part."\ndemographics = true\nblind = false\n[training]\nseconds = 0\n' +
       '[trials]\nrepeats = 1\nsettle = 0.5\ngate = "off"\nanswers = "participant"\nnoise = true\nfeedback = true\nbreak_every = 1'), 2);
     await study.start();
@@ -180,7 +180,7 @@ ${methods}`);
   return file;
 }
 
-/// Nothing that a participant is sent may tell a level, or which interval has it.
+/// No data sent to a participant may reveal a level, or which interval has it.
 function expectNothingTold(traffic: Traffic, study: Study): void {
   const texts = traffic.texts.filter((text) => text.includes('"type":"study"'));
   expect(texts.length).toBeGreaterThan(5);
@@ -196,7 +196,7 @@ function expectNothingTold(traffic: Traffic, study: Study): void {
 }
 
 describe("studies with levels", () => {
-  it("ask which of two intervals it was, by keys, a foot switch's keys and touch", async () => {
+  it("ask for one of two intervals, by keys, a foot switch's keys and touch", async () => {
     const study = new Study(levels('task = "forced-choice"', 'setting = "plan.speed"\nlow = 2.137\nhigh = 7.853\nreference = 2.137\nprocedure = "bayes"\ntrials = 3', ""), 11);
     await study.start();
     const [experimenter, participant] = [await browser.newPage(), await browser.newPage({ hasTouch: true })];
@@ -209,7 +209,7 @@ describe("studies with levels", () => {
     for (let i = 0; i < 3; ++i) {
       await comes(participant, "presenting");
       await participant.waitForFunction(() => document.getElementById("interval")!.textContent === "1");
-      await participant.keyboard.press("1"); // too early, and not taken
+      await participant.keyboard.press("1"); // too early, so it is ignored
       expect(await participant.locator("#first").isDisabled()).toBe(true);
       await participant.waitForFunction(() => document.getElementById("interval")!.textContent === "2");
       expect(await experimenter.locator("#condition").textContent()).toBe("");
@@ -231,7 +231,7 @@ describe("studies with levels", () => {
     await participant.close();
   });
 
-  it("let a participant tune one stimulus until it feels like another", async () => {
+  it("let a participant adjust one stimulus until it feels like another", async () => {
     const study = new Study(levels('task = "adjustment"\nrepeats = 2', 'setting = "plan.speed"\nlow = 2.137\nhigh = 7.853\nstep = 0.1\nagainst = "am"', '[method.am.pipeline]\nmethod = "am"\n[method.am.fluid]\ncells = 32\n'), 12);
     await study.start();
     const [experimenter, participant] = [await browser.newPage(), await browser.newPage()];
@@ -269,7 +269,7 @@ describe("studies with levels", () => {
 });
 
 describe("a session that is killed", () => {
-  it("goes on with the trial that was under way, and has each answer once", async () => {
+  it("resumes with the interrupted trial, and has each answer once", async () => {
     const study = new Study(protocol('[training]\nseconds = 0\n[trials]\nrepeats = 5\nsettle = 0.5\ngate = "off"'), 3);
     let given = 0;
     for (let start = 0; given < 10; ++start) {
@@ -282,7 +282,7 @@ describe("a session that is killed", () => {
       for (const until = start % 3; given < 10; ++given) {
         await comes(page, "presenting");
         if (given % 3 === until) {
-          // whether the answer is on the disk when the program dies is not known; that it is there once is
+          // the answer may or may not have reached the disk when the program dies, but it must be there once
           if (start % 2 === 0) await page.keyboard.press("y");
           break;
         }
@@ -297,5 +297,5 @@ describe("a session that is killed", () => {
     await expect(study.start("--resume")).rejects.toThrow("has given all answers");
     await expect(study.start()).rejects.toThrow("has begun");
     await expect(new Study(study.protocol, 4).start("--resume")).rejects.toThrow("has not begun");
-  }, 240_000); // some ten starts of the program and of the page
+  }, 240_000); // about ten starts of the program and of the page
 });

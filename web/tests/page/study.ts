@@ -1,4 +1,4 @@
-/// prostm study run under test.
+/// Runs prostm study run for tests.
 
 import { spawn, type ChildProcess } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -6,7 +6,7 @@ import { join } from "node:path";
 import type { Page } from "playwright-core";
 import { folder, kProgram, type Json } from "./program";
 
-/// A study whose trials are short, with a hand that is not tracked.
+/// A study with short trials and a hand that is not tracked.
 export function protocol(more: string): string {
   const file = join(folder, `${Math.random().toString(36).slice(2)}.toml`);
   writeFileSync(file, `${more}

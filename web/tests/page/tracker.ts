@@ -1,4 +1,4 @@
-/// A tracking service for a program under test, as Leap's: a right hand, the tip of whose index finger rests where a test wants it.
+/// A tracking service like Leap's for a program under test: a right hand whose index fingertip rests where a test puts it.
 
 import { once } from "node:events";
 import type { AddressInfo } from "node:net";
@@ -8,12 +8,12 @@ import { skeleton } from "../support/skeleton";
 
 const kIndexTip = 10;
 const kThumbMetacarpal = 2, kIndexMetacarpal = 6;
-export const kFlesh = 0.8 * 0.0085; // radius of the tip, as the program makes it of the finger's width [m]
+export const kFlesh = 0.8 * 0.0085; // radius of the fingertip, as the program derives it from the finger's width [m]
 
 export class FakeTracker {
-  /// Where the tip is, in the frame of the tracker [m].
+  /// Position of the fingertip in the tracker's frame [m].
   readonly tip = new Vector3(0, 0.2, 0);
-  private noise = 2e-5; // of every coordinate [m]
+  private noise = 2e-5; // of each coordinate [m]
   private readonly timer: NodeJS.Timeout;
   private readonly begun = performance.now();
 
@@ -41,7 +41,7 @@ export class FakeTracker {
   private frame(): string {
     const { joints } = skeleton(new Matrix4(), 0.1, "right");
     const at = (joint: number) => new Vector3().fromArray(joints, 8 * joint);
-    // as a real tracker, it is never quite still: joints that do not move at all are not taken
+    // like a real tracker, it is never quite still: joints without any motion are rejected
     this.noise = -this.noise;
     const shift = this.tip.clone().sub(at(kIndexTip)).addScalar(this.noise);
     const place = (joint: number) => at(joint).add(shift).multiplyScalar(1000).toArray();

@@ -1,5 +1,5 @@
-/// A study of 16 people from its first trial to its last, in the browser, with simulated hands and answers. The program is
-/// killed at 20 random moments. Takes some ten minutes: PROSTM=… npm run whole-study
+/// A study of 16 people from the first trial to the last, in the browser, with simulated hands and answers. The program is
+/// killed at 20 random times. Takes about ten minutes: PROSTM=… npm run whole-study
 
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -9,7 +9,7 @@ import { comes, protocol, Study } from "./study";
 
 const kPeople = 16, kTrials = 16, kKills = 20;
 
-/// Uniform in [0, 1), the same each time (mulberry32).
+/// Uniform in [0, 1), repeatable (mulberry32).
 let seed = 7;
 function random(): number {
   seed = (seed + 0x6d2b79f5) | 0;
@@ -22,7 +22,7 @@ function check(holds: boolean, what: string): void {
   if (!holds) throw new Error(`does not hold: ${what}`);
 }
 
-/// All bytes that the participant's page gets, of messages and files.
+/// All bytes that the participant's page receives, in messages and files.
 const bytes: string[] = [];
 function listen(page: Page): void {
   page.on("websocket", (socket) => socket.on("framereceived", ({ payload }) => bytes.push(payload.toString("latin1"))));
@@ -45,7 +45,7 @@ async function open(study: Study): Promise<[Page, Page]> {
   return [experimenter, participant];
 }
 
-/// Answers what is asked, until all is answered or the program is killed. @return whether it was.
+/// Answers until all trials are answered or the program is killed. @return whether all are answered.
 async function answer(study: Study, [experimenter, participant]: [Page, Page]): Promise<boolean> {
   while (study.trials().length < kTrials) {
     await comes(experimenter, "presenting");
@@ -53,7 +53,7 @@ async function answer(study: Study, [experimenter, participant]: [Page, Page]): 
     if (killed < kKills && given >= kills[killed]!) {
       const wait = 30 * random();
       if (random() < 0.5) await experimenter.keyboard.press("n");
-      await experimenter.waitForTimeout(wait); // anywhere in what the answer sets off
+      await experimenter.waitForTimeout(wait); // at any stage of handling the answer
       await study.kill();
       ++killed;
       const after = study.trials().length;
@@ -94,10 +94,10 @@ const all = Array.from({ length: kPeople }, (_, i) => {
 const methods = all.map((trials) => new Set(trials.map((t) => t.method)));
 check(methods.every((m) => m.size === 1), "each participant has one method");
 const am = methods.filter((m) => m.has("am")).length;
-/// χ² of two counts that should be equal; above 6.63 one in a hundred studies is.
+/// χ² of two counts that should be equal; it exceeds 6.63 in one of a hundred studies.
 const chi = (a: number, b: number) => (a - b) ** 2 / (a + b);
 const places = Array.from({ length: kTrials }, (_, place) => all.filter((trials) => trials[place]!.scene === "one-plume").length);
-const order = places.reduce((sum, n) => sum + chi(n, kPeople - n), 0); // 16 degrees of freedom or fewer: 32.0 at p = 0.01
+const order = places.reduce((sum, n) => sum + chi(n, kPeople - n), 0); // at most 16 degrees of freedom: 32.0 at p = 0.01
 const one = all.flat().filter((t) => t.scene === "one-plume").length, asked = all.flat().filter((t) => t.question === "one-plume").length;
 const told = bytes.filter((text) => /"(method|condition|correct|stimulus)"|pro-stm/.test(text) && !text.includes("<!doctype")).length;
 console.log(`answers ${all.flat().length}, lost ${lost}, doubled ${doubled}, kills ${killed}`);

@@ -1,4 +1,4 @@
-/// Frames as the program writes them, made here from plain values.
+/// Frames as the program encodes them, made here from plain values.
 import type { Gate, Hand, Patch, Path, Run, Smoke } from "../../src/wire";
 
 export interface Contents {
@@ -11,7 +11,7 @@ export interface Contents {
   field?: Patch[];
   plan?: Path[];
   gate?: Gate;
-  unknown?: number; // bytes of a section that no page knows
+  unknown?: number; // size of a section that no page knows
 }
 
 class Writer {

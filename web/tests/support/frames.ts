@@ -1,4 +1,4 @@
-/// Frames and controls for tests, by what matters in them.
+/// Frames and controls for tests, built from the relevant values.
 import type { Control, NumberControl, State } from "../../src/messages";
 import { Decoder, kNumbers, type Frame, type NumberName, type Patch, type Run } from "../../src/wire";
 import { encode, type Contents } from "./encode";

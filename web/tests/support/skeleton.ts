@@ -1,4 +1,4 @@
-/// A hand of average size in any pose, as the program's scripted hand has it: (H2) and (H3) of docs/design/hands.md.
+/// A hand of average size in any pose, like the program's scripted hand: (H2) and (H3) of docs/design/hands.md.
 
 import { Matrix4, Quaternion, Vector3 } from "three";
 import type { Hand } from "../../src/wire";
@@ -16,7 +16,7 @@ const kDegree = Math.PI / 180;
 const flexed = (angle: number) => new Matrix4().makeRotationX(-angle);
 const splayed = (degrees: number) => new Matrix4().makeRotationY(degrees * kDegree);
 
-/// A right hand, or its mirror image; `pose` is X_DH: x to the little finger of a right hand, y dorsal, z to the wrist.
+/// A right hand, or its mirror image; `pose` is X_DH: x towards a right hand's little finger, y dorsal, z to the wrist.
 export function skeleton(pose: Matrix4, closure: number, side: "left" | "right", id = 1): Hand {
   const frame: Matrix4[] = [];
   const radius: number[] = [];

@@ -7,12 +7,12 @@ describe("an address", () => {
     settings: { scene: "still-air", paths: "2" }, eye: [-32, 38.5, 700, 0, 0, 125], theme: "dark", large: true, folded: ["Plan", "Hand"],
     skin: "target", picture: "off", scale: 0.6, span: 120, still: true,
   };
-  it("says what it was made from", () => expect(readAddress(writeAddress(whole))).toEqual(whole));
-  it("is empty where nothing differs", () => {
+  it("round-trips the state", () => expect(readAddress(writeAddress(whole))).toEqual(whole));
+  it("is empty for the defaults", () => {
     expect(writeAddress({ settings: {} })).toBe("");
     expect(readAddress("")).toEqual({ settings: {} });
   });
-  it("tells groups that are all open from groups that nobody spoke of", () => {
+  it("distinguishes open groups from unspecified ones", () => {
     expect(readAddress(writeAddress({ settings: {}, folded: [] })).folded).toEqual([]);
     expect(readAddress("#theme=dark").folded).toBeUndefined();
   });
@@ -26,7 +26,7 @@ describe("settings in an address", () => {
     expect(changedSettings([speed, { ...paths, value: 2 }, { ...scene, value: "still-air" } as typeof scene])).toEqual({ paths: "2", scene: "still-air" });
     expect(changedSettings([{ ...speed, value: 7.000000000000001 }])).toEqual({});
   });
-  it("are asked for where they differ from what is, and can be", () => {
+  it("are requested if they differ from the present ones and exist", () => {
     const asked = askedSettings([speed, paths, scene, prediction], { speed: "7", paths: "2", scene: "no such", prediction: "false", other: "1" });
     expect(asked.map(({ control, value }) => [control.id, value])).toEqual([["paths", 2], ["prediction", false]]);
     expect(askedSettings([paths], { paths: "many" })).toEqual([]);

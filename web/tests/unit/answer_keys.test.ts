@@ -33,7 +33,7 @@ describe("three intervals", () => {
 
 describe("tuning", () => {
   const tune = (to: string, coarse = false) => ({ do: "tune", to, coarse });
-  it("is by arrows and signs, on the keypad, too", () => {
+  it("uses arrows and signs, also on the keypad", () => {
     expect(answerOf(press("ArrowUp", "ArrowUp"), tuned)).toEqual(tune("more"));
     expect(answerOf(press("ArrowLeft", "ArrowLeft", true), tuned)).toEqual(tune("less", true));
     expect(answerOf(press("+", "Equal", true), tuned)).toEqual(tune("more"));

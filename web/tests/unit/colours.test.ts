@@ -9,17 +9,17 @@ const lightness = ([r, g, b]: Rgb) => {
 };
 
 describe("colours", () => {
-  it("of pressures grow lighter evenly, so that they can be read in grey", () => {
+  it("of pressures increase evenly in lightness, so that they can be read in grey", () => {
     const steps = Array.from({ length: 32 }, (_, i) => lightness(fieldColour((i + 1) / 32)) - lightness(fieldColour(i / 32)));
     expect(Math.min(...steps)).toBeGreaterThan(1);
     expect(Math.max(...steps)).toBeLessThan(4);
   });
-  it("of pressures are those of the figures", () => {
-    // as src/figure/colours.cpp computes them
+  it("of pressures match the figures", () => {
+    // values of src/figure/colours.cpp
     const figures: [number, Rgb][] = [[0, [0.182, 0, 0.3083]], [0.3, [0, 0.3522, 0.5578]], [0.7, [0, 0.7749, 0.5425]], [1, [1, 0.9358, 0.4371]]];
     for (const [t, colour] of figures) fieldColour(t).forEach((v, i) => expect(v).toBeCloseTo(colour[i]!, 3));
   });
-  it("of differences are as light for too little as for too much", () => {
+  it("of differences are equally light for too little and too much", () => {
     for (const dark of [false, true]) {
       for (const t of [0.25, 0.5, 1]) {
         expect(Math.abs(lightness(differenceColour(t, dark)) - lightness(differenceColour(-t, dark)))).toBeLessThan(6);
@@ -27,8 +27,8 @@ describe("colours", () => {
       }
     }
   });
-  it("of paths come again after eight", () => expect(pathColour(9)).toEqual(pathColour(1)));
-  it("stay on the screen", () => {
+  it("of paths repeat after eight", () => expect(pathColour(9)).toEqual(pathColour(1)));
+  it("are displayable", () => {
     for (const v of table(fieldColour, -1, 2)) expect(v).toBeLessThanOrEqual(255);
     expect([...table(fieldColour, 0, 1).subarray(0, 4)]).toEqual([...table(fieldColour, -1, 1).subarray(0, 4)]);
   });

@@ -45,7 +45,7 @@ afterEach(() => {
 });
 
 describe("a connection", () => {
-  it("asks for 30 frames a second, and for one when nobody looks", () => {
+  it("requests 30 frames a second, and one while hidden", () => {
     const connection = make();
     connection.open();
     expect(connection.send({ type: "transport", do: "play" })).toBe(false);
@@ -55,7 +55,7 @@ describe("a connection", () => {
     expect(newest().sent.map((s) => JSON.parse(s))).toEqual([{ type: "rate", hz: 30 }, { type: "rate", hz: 1 }]);
   });
 
-  it("asks for another rate when it is told one", () => {
+  it("requests another rate when it is set", () => {
     const connection = make();
     connection.open();
     newest().open();
@@ -63,7 +63,7 @@ describe("a connection", () => {
     expect(newest().sent.map((s) => JSON.parse(s).hz)).toEqual([30, 15, 10]);
   });
 
-  it("lets no malformed message out of its handler, counts it, says so and reads the next", () => {
+  it("catches, counts and reports a malformed message, and reads the next", () => {
     const connection = make();
     connection.open();
     newest().open();
@@ -77,7 +77,7 @@ describe("a connection", () => {
     expect([frames, errors]).toEqual([[9], ["no"]]);
   });
 
-  it("tries again after it is cut, with longer and longer waits, and soon again once it was back", () => {
+  it("reconnects after a loss, with growing waits, and quickly again after a success", () => {
     const connection = make();
     connection.open();
     newest().open();

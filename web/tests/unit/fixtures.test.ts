@@ -5,7 +5,7 @@ import { Decoder, kNumbers, type Frame } from "../../src/wire";
 const folder = new URL("../../fixtures/", import.meta.url);
 const names = readdirSync(folder).filter((n) => n.endsWith(".bin")).map((n) => n.slice(0, -4));
 
-/// A frame in the words of the files that the encoder's own tests write.
+/// A frame in the form of the files that the encoder's own tests write.
 function inWords(frame: Frame): unknown {
   const known = (x: number) => (Number.isNaN(x) ? null : x);
   const { run } = frame;
@@ -28,7 +28,7 @@ function inWords(frame: Frame): unknown {
   };
 }
 
-/// Files say −0 as 0, as JSON does.
+/// Files have −0 as 0, like JSON.
 const plain = (x: unknown): unknown => JSON.parse(JSON.stringify(x));
 
 describe("a frame of the program", () => {

@@ -9,7 +9,7 @@ import { skeleton } from "../support/skeleton";
 const somewhere = new Matrix4().makeRotationX(1.2).setPosition(0.02, -0.03, 0.2);
 const hands = [skeleton(somewhere, 0, "right"), skeleton(somewhere, 0.6, "left")];
 
-/// Every edge of a closed surface is in two triangles, once each way round.
+/// In a closed surface every edge is in two triangles, once in each direction.
 function openEdges(surface: Surface): number {
   const seen = new Map<string, number>();
   for (let t = 0; t < surface.indices.length; t += 3) {
@@ -31,7 +31,7 @@ function volume(surface: Surface): number {
 describe("surfaceNets", () => {
   const radius = 0.03;
   const sphere = surfaceNets((x, y, z) => Math.hypot(x, y, z) - radius, new Vector3(-0.04, -0.04, -0.04), new Vector3(0.04, 0.04, 0.04), 0.003);
-  it("makes a closed sphere of the right size, with its normals outwards", () => {
+  it("makes a closed sphere of the right size, with outward normals", () => {
     expect(openEdges(sphere)).toBe(0);
     expect(volume(sphere) / ((4 / 3) * Math.PI * radius ** 3)).toBeCloseTo(1, 1);
     for (let v = 0; v < sphere.positions.length; v += 3) {
@@ -56,7 +56,7 @@ describe("the skin of a tracked hand", () => {
   });
 
   it.each(made.map((m) => [m.hand.side, m] as const))("lies about the joints in the pose of the tracker (%s)", (_, { hand, rest, skin }) => {
-    // a point in the middle of each bone, carried by the joints, comes to lie on the tracked bone
+    // a point in the middle of each bone, moved by the joints, ends on the tracked bone
     for (const bone of skin.bones.filter((b) => b.chain < 5)) {
       const middle = bone.a.clone().lerp(bone.b, 0.5);
       const carried = carry(hand, rest.frame, skin, middle);

@@ -2,28 +2,28 @@ import { describe, expect, it } from "vitest";
 import { beyond, History, PerSecond, robustTop } from "../../src/panels/history";
 
 describe("the top of an axis", () => {
-  it("is above the largest value where none sticks out", () => {
+  it("exceeds the largest value if there is no outlier", () => {
     expect(robustTop([10, 11, 12, 13], 5)).toBeCloseTo(14.04);
     expect(robustTop([1, 2], 10)).toBe(10);
     expect(robustTop([], 3)).toBe(3);
     expect(robustTop([NaN, 20], 3)).toBeCloseTo(21.6);
   });
-  it("lets single values of a thousand stick out, so that the others are seen", () => {
+  it("ignores single outliers among a thousand values", () => {
     const values = Array.from({ length: 900 }, (_, i) => 10 + (i % 5));
     values[100] = values[500] = 1000;
     expect(robustTop(values, 5)).toBeCloseTo(1.08 * 14);
   });
 });
 
-describe("values that an axis cuts off", () => {
-  it("are known at its top and at its foot", () => {
+describe("values outside an axis", () => {
+  it("are found above and below", () => {
     const cut = beyond([-3, -2, -1, 0], [[0.9, -0.2, NaN, 0], [1.3, 0.4, 1, -4]], 1);
     expect(cut).toEqual({ above: [-3], below: [-2, 0] });
   });
 });
 
 describe("counts per second", () => {
-  it("are how fast a count grows", () => {
+  it("are the rate of a counter", () => {
     const rate = new PerSecond();
     let last = 0;
     for (let i = 0; i <= 90; ++i) last = rate.add(i / 30, 5 * Math.floor(i / 30));
@@ -31,7 +31,7 @@ describe("counts per second", () => {
     for (let i = 91; i <= 150; ++i) last = rate.add(i / 30, 15);
     expect(last).toBe(0);
   });
-  it("begin anew with the count", () => {
+  it("restart with the counter", () => {
     const rate = new PerSecond();
     rate.add(0, 1000);
     rate.add(1, 1010);
@@ -55,7 +55,7 @@ describe("a history", () => {
     }
     expect(new History(1).nearest(3)).toBe(-1);
   });
-  it("can be copied, and goes on without its copy", () => {
+  it("can be copied, and continues independently of the copy", () => {
     const copy = history.copy();
     history.add(201, [7]);
     expect(copy.times[copy.times.length - 1]).toBe(200);

@@ -12,7 +12,7 @@ describe("a letter's key", () => {
   ])("is found on %s keyboards", (_, key) => {
     expect(keyAmong(press(key, "KeyM"), ["y", "m"])).toBe("m");
   });
-  it("is where its letter is on keyboards that have Latin letters elsewhere", () => {
+  it("is at its letter on keyboards with another Latin layout", () => {
     expect(keyAmong(press("m", "Semicolon"), ["m"])).toBe("m"); // AZERTY
     expect(keyAmong(press("y", "KeyZ"), ["y", "z"])).toBe("y"); // QWERTZ
     expect(keyAmong(press("z", "KeyY"), ["y"])).toBeUndefined();
@@ -20,7 +20,7 @@ describe("a letter's key", () => {
     expect(keyAmong(press("b", "KeyN"), ["n"])).toBeUndefined(); // Dvorak
     expect(keyAmong(press("ı", "KeyI"), ["i"])).toBeUndefined(); // Turkish
   });
-  it("gives way to a character that is a key of its own", () => {
+  it("yields to a character that is itself a key", () => {
     expect(keyAmong(press("?", "KeyM", true), ["m", "?"])).toBe("?"); // AZERTY
     expect(keyAmong(press("/", "KeyQ"), ["q"])).toBe("q"); // Hebrew
     expect(keyAmong(press(";", "KeyQ"), ["q"])).toBe("q"); // Greek
@@ -40,7 +40,7 @@ describe("a digit's key", () => {
   ])("is found on %s keyboards", (_, key, code) => {
     expect(keyAmong(press(key, code), ["1", "2"])).toBe("1");
   });
-  it("gives way to what it types", () => {
+  it("yields to the character that it types", () => {
     expect(keyAmong(press("+", "Digit1"), ["1", "+"])).toBe("+"); // Czech
     expect(keyAmong(press("ArrowLeft", "Numpad4"), ["4", "ArrowLeft"])).toBe("ArrowLeft");
   });
@@ -52,7 +52,7 @@ describe("other keys", () => {
     expect(namesOf(press("Enter", "NumpadEnter"))).toEqual(["Enter"]);
     expect(namesOf(press("Escape", "Escape"))).toEqual(["Escape"]);
   });
-  it("are known by their places where they type another script", () => {
+  it("are known by their places if they type another script", () => {
     expect(keyAmong(press("؟", "Slash", true), ["?"])).toBe("?");
     expect(keyAmong(press("ข", "Minus"), ["-"])).toBe("-");
     expect(keyAmong(press("\u00a0", "Space", true), [" "])).toBe(" ");

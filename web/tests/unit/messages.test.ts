@@ -6,10 +6,10 @@ const transport = { playing: true, recording: null, source: "scripted", base: "s
 const state = { type: "state", controls: [control], transport, rates: { world_hz: 50, plan_hz: 25 }, settings: "" };
 
 describe("parseMessage", () => {
-  it("takes a state, and a missing tracker or calibration as none", () => {
+  it("accepts a state, and treats a missing tracker or calibration as none", () => {
     expect(parseMessage(JSON.stringify(state))).toMatchObject({ tracker: null, calibration: null, controls: [control] });
   });
-  it("takes what is advised where the rates are missed", () => {
+  it("accepts advice for missed rates", () => {
     const advice = { sentence: "Use --grid 48.", set: { id: "grid", value: 48, label: "Turn the smoke's grid down to 48 cells" } };
     const withAdvice = (a: unknown) => parseMessage(JSON.stringify({ ...state, rates: { ...state.rates, advice: a } }));
     expect(withAdvice(advice)).toMatchObject({ rates: { advice } });
@@ -18,7 +18,7 @@ describe("parseMessage", () => {
     expect(withAdvice({ sentence: "Use --grid 48." })).toBeNull();
     expect(withAdvice("Use --grid 48.")).toBeNull();
   });
-  it("takes a hello and an error", () => {
+  it("accepts a hello and an error", () => {
     const hello = { type: "hello", version: 1, page: 3, prostm: "0.1.0", device: "simulated usx", numbers: ["rmse"], array: { name: "usx", transducers_mm: [[0, 0, 0]] }, box_mm: { origin: [0, 0, 0], edge: 250 } };
     expect(parseMessage(JSON.stringify(hello))).toEqual(hello);
     expect(parseMessage('{"type":"error","sentence":"no"}')).toEqual({ type: "error", sentence: "no" });

@@ -2,7 +2,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { SettingsSender } from "../../src/controls/settings_sender";
 import { Pace } from "../../src/scene/pace";
 
-/// Pictures that each cost so long, for some seconds.
+/// Draws pictures of this cost for some seconds.
 function drawn(pace: Pace, cost: number, seconds: number, held: boolean, from = 0): { interval: number; off: boolean; at: number } {
   let off = false, interval = 0, next = from, t = from;
   for (; t < from + 1000 * seconds; t += 20) {
@@ -17,11 +17,11 @@ function drawn(pace: Pace, cost: number, seconds: number, held: boolean, from = 
 }
 
 describe("the pace of pictures", () => {
-  it("is free where they are quick", () => expect(drawn(new Pace(false), 16, 30, false)).toMatchObject({ interval: 0, off: false }));
-  it("leaves a processor that draws seven eighths of its time", () => {
+  it("is free if they are fast", () => expect(drawn(new Pace(false), 16, 30, false)).toMatchObject({ interval: 0, off: false }));
+  it("leaves seven eighths of the time to a processor that draws", () => {
     expect(drawn(new Pace(true), 100, 10, true)).toMatchObject({ interval: 800, off: false });
   });
-  it("slows down first where the run suffers, and gives up last", () => {
+  it("slows down first if the run suffers, and switches off last", () => {
     const pace = new Pace(true);
     const first = drawn(pace, 40, 4, false);
     expect(first.interval).toBeGreaterThanOrEqual(320);
@@ -31,7 +31,7 @@ describe("the pace of pictures", () => {
     pace.begin();
     expect(pace.state(last.at, false)).toEqual({ interval: 80, off: false });
   });
-  it("gives up where a picture takes so long that there is no use in it", () => {
+  it("switches off if a picture takes so long that it is of no use", () => {
     expect(drawn(new Pace(true), 300, 5, true).off).toBe(false);
     expect(drawn(new Pace(true), 500, 20, true).off).toBe(true);
   });
@@ -47,7 +47,7 @@ describe("settings on their way", () => {
     vi.unstubAllGlobals();
   });
 
-  it("go at once, and then the newest of each control twenty times a second at most", () => {
+  it("are sent at once, and then the newest of each control at most twenty times a second", () => {
     const sent: [string, unknown, number][] = [];
     const begun = performance.now();
     const sender = new SettingsSender((id, value) => sent.push([id, value, performance.now() - begun]));
@@ -64,7 +64,7 @@ describe("settings on their way", () => {
     expect(sent.filter(([id]) => id === "gain").pop()![1]).toBe(-398);
     for (let i = 1; i < speeds.length; ++i) expect(speeds[i]![2] - speeds[i - 1]![2]).toBeGreaterThanOrEqual(49);
   });
-  it("are forgotten with the program that they were for", () => {
+  it("are discarded with the connection", () => {
     const sent: string[] = [];
     const sender = new SettingsSender((id) => sent.push(id));
     sender.set("speed", 1);

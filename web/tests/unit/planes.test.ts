@@ -8,7 +8,7 @@ import { flatPatch, frameWith } from "../support/frames";
 const patch = flatPatch(4, 6, [0.1, -0.2, 0.3]);
 
 describe("a plane on a canvas", () => {
-  it("says what is under a place of it", () => {
+  it("finds the cell at a position", () => {
     for (const patches of [[patch], [patch, patch]]) {
       const placed = layOut(patches, 300, 400);
       placed.forEach((place, k) => {
@@ -21,19 +21,19 @@ describe("a plane on a canvas", () => {
       expect(under(placed, -1, 10)).toBeNull();
     }
   });
-  it("knows where the skin is over the array, at its height over the plane", () => {
+  it("finds the skin over the array, at its height over the plane", () => {
     const height = new Int16Array(24).fill(2000); // 20 mm
     const there = { patch: { ...patch, height }, cell: 9, x: 0.03, y: 0.01 };
     expect(overArray(there)).toEqual([0.13, -0.19, 0.32].map((v) => expect.closeTo(v)));
-    // a plane that stands upright: its y goes up, and its normal along −y
+    // an upright plane: its y axis points up, and its normal along −y
     const pose = Float32Array.from([1, 0, 0, 0.1, 0, 0, -1, -0.2, 0, 1, 0, 0.3]);
     expect(overArray({ ...there, patch: { ...patch, height, pose } })).toEqual([0.13, -0.22, 0.31].map((v) => expect.closeTo(v)));
   });
-  it("has nothing where there is no skin", () => {
+  it("is empty off the skin", () => {
     expect(cellAt(flatPatch(4, 6, [0, 0, 0], 0), 0.03, 0.01)).toBe(-1);
     expect(cellAt(patch, 0.056, 0.01)).toBe(-1);
   });
-  it("knows the pressures of its cells", () => expect(pressures(patch, 9)).toEqual({ target: expect.closeTo(0.09), rendered: expect.closeTo(0.045) }));
+  it("gives the pressures of its cells", () => expect(pressures(patch, 9)).toEqual({ target: expect.closeTo(0.09), rendered: expect.closeTo(0.045) }));
 });
 
 describe("the scale of pressures", () => {
@@ -41,7 +41,7 @@ describe("the scale of pressures", () => {
     expect([0.11, 0.15, 0.5, 0.61, 7.9, 9].map(roundedUp)).toEqual([0.15, 0.15, 0.5, 0.8, 8, 10].map((x) => expect.closeTo(x)));
     expect(roundedUp(0)).toBe(1);
   });
-  it("grows at once, shrinks after a while, and stays where it is locked", () => {
+  it("grows at once, shrinks after a while, and stays when locked", () => {
     const scale = new PressureScale();
     const weak = { ...patch, scale: 0.095, target: Uint16Array.from(patch.target, () => 65535) }, strong = { ...weak, scale: 1.4 };
     scale.measure(frameWith({}, {}, { field: [strong] }), 0);
@@ -58,19 +58,19 @@ describe("the scale of pressures", () => {
 
 describe("a ray", () => {
   const down = new Vector3(0, 0, -1), above = new Vector3(0.1 + 0.03, -0.2 + 0.01, 0.9);
-  it("meets the cell under it", () => {
+  it("hits the cell below it", () => {
     const hit = pick([patch], above, down);
     expect(hit?.cell).toBe(9);
     expect(hit?.point.distanceTo(new Vector3(0.13, -0.19, 0.3))).toBeLessThan(1e-6);
   });
-  it("meets skin at its height over the plane, and the nearest of two", () => {
+  it("hits skin at its height over the plane, and the nearer of two", () => {
     const high = { ...patch, height: new Int16Array(24).fill(2000) }; // 20 mm
     expect(pick([patch, high], above, down)?.point.z).toBeCloseTo(0.32);
-    // a slanting ray meets the skin before it meets the plane
+    // an oblique ray hits the skin before the plane
     const slant = new Vector3(1, 0, -1).normalize(), from = new Vector3(0.1 - 0.27, -0.19, 0.62);
     expect(pick([high], from, slant)?.cell).toBe(9);
   });
-  it("meets nothing beside the skin, behind the eye, and along the plane", () => {
+  it("misses off the skin, behind the camera, and parallel to the plane", () => {
     expect(pick([patch], new Vector3(0, 0, 0.9), down)).toBeNull();
     expect(pick([patch], new Vector3(0.13, -0.19, 0.1), down)).toBeNull();
     expect(pick([patch], above, new Vector3(1, 0, 0))).toBeNull();

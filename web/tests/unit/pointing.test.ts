@@ -15,7 +15,7 @@ afterEach(() => vi.unstubAllGlobals());
 
 const event = (name: string, change: Change) =>
   Object.assign(new Event(name), { pointerType: "touch", pointerId: 1, isPrimary: true, buttons: 1, clientX: 50, clientY: 60 }, change);
-/// As a browser tells them: first the page, then the part.
+/// In the order of a browser: first the page, then the element.
 function send(name: string, change: Change = {}): void {
   page.dispatchEvent(event(name, change));
   part.dispatchEvent(event(name, change));
@@ -25,7 +25,7 @@ const last = () => seen[seen.length - 1];
 const end = () => ["pointerup", "pointerleave"].forEach((name) => send(name));
 
 describe("a mouse", () => {
-  it("points where it is, unless a button is held", () => {
+  it("points unless a button is pressed", () => {
     send("pointermove", { ...mouse, clientX: 7, clientY: 8 });
     expect(last()).toEqual({ x: 7, y: 8, tapped: false });
     send("pointermove", { ...mouse, buttons: 1 });
@@ -65,7 +65,7 @@ describe("a finger", () => {
     end();
     expect(seen).toEqual([]);
   });
-  it("gives way to a mouse", () => {
+  it("yields to a mouse", () => {
     send("pointerdown");
     end();
     send("pointermove", mouse);

@@ -6,11 +6,11 @@ import { Ruler } from "../../src/scene/ruler";
 
 const ruler = new Ruler();
 const upright = ruler.group.children[0] as LineSegments;
-// as a picture does that is drawn before the program has said anything
+// like a picture drawn before the program has sent anything
 upright.geometry.computeBoundingSphere();
 ruler.set({ box_mm: { origin: [-180, -180, 0], edge: 360 } } as unknown as Hello);
 
-/// An eye as far from the middle of the scene [m] and as high above it [degrees] as the page's views are.
+/// A camera at this distance from the middle of the scene [m] and this elevation [degrees], as in the page's views.
 function eye(aspect: number, azimuth = -32, elevation = 38, distance = 0.7): PerspectiveCamera {
   const camera = new PerspectiveCamera(34, aspect, 0.02, 6);
   const far = distance * Math.max(1, 0.95 / aspect), [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
@@ -35,11 +35,11 @@ describe("the ruler", () => {
       expect(Math.abs(y)).toBeLessThan(0.87);
     }
   });
-  it("stands on an edge of the box where that is in the picture", () => {
+  it("is on an edge of the box if that is in the picture", () => {
     const place = at(eye(2.5), 1500, "0");
     expect([place.x, place.y, place.z]).toEqual([expect.closeTo(-0.18), expect.closeTo(0.18), 0]);
   });
-  it("goes with a box that follows a hand", () => {
+  it("follows a box that follows a hand", () => {
     const moved = new Ruler();
     moved.set({ box_mm: { origin: [-80, -80, 0], edge: 160 } } as unknown as Hello);
     moved.placeBox(new Vector3(0.02, 0.04, 0.09), 0.16);
@@ -48,7 +48,7 @@ describe("the ruler", () => {
     expect(labels[3]!.at.z).toBeCloseTo(0.09);
     expect(labels[3]!.at.x).toBeCloseTo(0.10);
   });
-  it("stands at the left of a palm that is seen from below, too", () => {
+  it("is to the left of a palm that is seen from below, too", () => {
     const camera = eye(0.86, -18, -34, 0.46);
     expect(at(camera, 375, "200").project(camera).x).toBeLessThan(-0.5);
   });
@@ -59,7 +59,7 @@ describe("the ruler", () => {
     const seen = new Frustum().setFromProjectionMatrix(new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse));
     expect(seen.intersectsObject(upright)).toBe(true);
   });
-  it("stands upright, from whatever side it is seen", () => {
+  it("is upright from any direction", () => {
     for (let azimuth = 0; azimuth < 360; azimuth += 30) {
       const camera = eye(1.2, azimuth), [low, high] = ["0", "100"].map((text) => at(camera, 800, text));
       expect(high!.clone().sub(low!).distanceTo(new Vector3(0, 0, 0.1))).toBeLessThan(1e-9);

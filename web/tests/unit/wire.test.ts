@@ -16,7 +16,7 @@ const whole = () =>
   encode({ sequence: 12, run: { time: 3.5, recordingTime: 1.25, worldSteps: 175, planUpdates: 87, paused: true, handInSight: true, muted: true }, unknown: 13,
     numbers: kNumbers.map((_, i) => i), hands: [hand, { ...hand, side: "left" }], smoke, field: [patch, patch], plan: [path, focus], gate });
 
-/// Float32 has rounded what was not a multiple of a power of two.
+/// Float32 rounds numbers that are not multiples of a power of two.
 const rounded = (p: Patch): Patch => ({ ...p, cell: Math.fround(p.cell) });
 
 describe("a whole frame", () => {
@@ -33,7 +33,7 @@ describe("a whole frame", () => {
     expect(frame.plan).toEqual([path, { ...focus, period: Math.fround(0.005) }]);
   });
 
-  it("leaves the smoke and the field of the frame before, until new ones come", () => {
+  it("keeps the smoke and the field of the previous frame until new ones arrive", () => {
     const decoder = new Decoder();
     decoder.decode(whole());
     const next = decoder.decode(encode({ sequence: 13, plan: [] }));
@@ -57,7 +57,7 @@ describe("a malformed message", () => {
     change(new DataView(message));
     return message;
   };
-  /// where the section with this id begins
+  /// offset of the section with this id
   const find = (message: ArrayBuffer, id: number): number => {
     const view = new DataView(message);
     let at = 16;
@@ -65,11 +65,11 @@ describe("a malformed message", () => {
     return at;
   };
 
-  it("is refused wherever it is cut off", () => {
+  it("is rejected wherever it is cut off", () => {
     const message = whole();
     for (let length = 0; length < message.byteLength; length += length < 64 ? 1 : 7) {
       refused(message.slice(0, length));
-      // also when it lies about its length
+      // also if its length field is wrong
       const cut = message.slice(0, length);
       if (length >= 16 && length < message.byteLength - 8) {
         new DataView(cut).setUint32(12, length, true);
@@ -77,13 +77,13 @@ describe("a malformed message", () => {
       }
     }
   });
-  it("of another version is refused with a sentence that says so", () => {
+  it("of another version is rejected with a sentence that says so", () => {
     expect(() => new Decoder().decode(encode({ version: 3 }))).toThrow(/version 3 .* version 2/);
   });
-  it("that begins with something else is refused", () => refused(changed((v) => v.setUint8(0, 0x51))));
-  it("with more sections than it holds is refused", () => refused(changed((v) => v.setUint16(6, 60000, true))));
-  it("without a run is refused", () => refused(changed((v) => v.setUint16(16, 77, true))));
-  it("with absurd lengths is refused, and nothing is allocated for them", () => {
+  it("with another magic number is rejected", () => refused(changed((v) => v.setUint8(0, 0x51))));
+  it("with more sections than it holds is rejected", () => refused(changed((v) => v.setUint16(6, 60000, true))));
+  it("without a run is rejected", () => refused(changed((v) => v.setUint16(16, 77, true))));
+  it("with absurd lengths is rejected without allocation", () => {
     for (const [id, offset] of [[4, 8], [5, 8], [5, 12], [6, 16], [7, 36]] as const) {
       for (const value of [0xffffffff, 0x7fffffff, 100000]) {
         refused(changed((v) => v.setUint32(find(v.buffer as ArrayBuffer, id) + offset, value, true)));
@@ -92,12 +92,12 @@ describe("a malformed message", () => {
     for (const id of [1, 2, 3, 4, 5, 6, 7]) refused(changed((v) => v.setUint32(find(v.buffer as ArrayBuffer, id) + 4, 0xfffffff0, true)));
     for (const id of [2, 3, 5, 6]) refused(changed((v) => v.setUint16(find(v.buffer as ArrayBuffer, id) + 2, 65535, true)));
   });
-  it("with joints, boxes or paths that are not finite is refused", () => {
+  it("with joints, boxes or paths that are not finite is rejected", () => {
     for (const [id, offset] of [[3, 24], [4, 12], [5, 16], [6, 32], [7, 20]] as const) {
       refused(changed((v) => v.setFloat32(find(v.buffer as ArrayBuffer, id) + offset, NaN, true)));
     }
   });
-  it("changes nothing of what is kept", () => {
+  it("does not change the state", () => {
     const decoder = new Decoder();
     decoder.decode(whole());
     const bad = encode({ sequence: 13, smoke: { ...smoke, n: 1, density: Uint8Array.of(9) }, plan: [path] });
@@ -105,7 +105,7 @@ describe("a malformed message", () => {
     expect(() => decoder.decode(bad)).toThrow(WireError);
     expect(decoder.decode(encode({ sequence: 14 })).smoke).toEqual(smoke);
   });
-  it("made of random bytes never does anything but be refused or read", () => {
+  it("of random bytes is always rejected or read", () => {
     let seed = 1;
     const random = () => (seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0) / 2 ** 32;
     for (let round = 0; round < 3000; ++round) {

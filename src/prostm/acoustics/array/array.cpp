@@ -28,7 +28,7 @@ void validate_kind(const TransducerArray& array) {
   require_between("amplitude_high", array.amplitude_high, array.amplitude, kMost, "Pa·m");
 }
 
-/// In order of x, only neighbours can be near each other.
+/// Throws if two transducers are too near. Sorted by x, only neighbours need to be compared.
 void refuse_duplicates(const std::vector<Vec3>& position) {
   std::vector<std::size_t> order(position.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -122,7 +122,7 @@ void validate(const TransducerArray& array) {
 }
 
 TransducerArray place(const TransducerArray& array, const Pose& X_DA) {
-  // non-finite values are refused first: comparing or subtracting them would trap
+  // reject non-finite values first: comparing or subtracting them would trap
   const Eigen::Matrix4d matrix = X_DA.matrix();
   const bool finite =
       std::all_of(matrix.data(), matrix.data() + 16, [](double x) { return std::isfinite(x); });

@@ -1,5 +1,5 @@
 #pragma once
-/// Ultrasound arrays: where the transducers are and how they sound.
+/// Ultrasound arrays: positions and acoustic properties of the transducers.
 
 #include <complex>
 #include <span>
@@ -16,16 +16,16 @@ inline constexpr int kMaxTransducers = 4096;
 /// Transducers nearer to each other than this count as duplicates [m].
 inline constexpr double kMinTransducerDistance = 1e-4;
 
-/// Transducers of one kind, driven at one frequency, at fixed places: one array, or several.
+/// Transducers of one type, driven at one frequency, at fixed positions: one array or several.
 struct TransducerArray {
   std::string name;
   std::vector<Vec3> position;  ///< centres in D [m]
-  std::vector<Vec3> normal;    ///< unit vectors in D along the transducers' axes, one for each
+  std::vector<Vec3> normal;    ///< unit vectors in D along the transducers' axes
   double frequency = 40e3;     ///< [Hz]
   double radius = 4.5e-3;      ///< radius of the piston that gives the directivity [m]
   Directivity directivity = Directivity::Piston;
   double amplitude = 0.0;  ///< rms acoustic pressure × distance on axis at full drive [Pa·m]
-  /// Lowest and highest amplitude in the sources [Pa·m]; both equal `amplitude` if there is only
+  /// Lowest and highest amplitude in the literature [Pa·m]; both equal `amplitude` if there is only
   /// one source.
   double amplitude_low = 0.0, amplitude_high = 0.0;
 };
@@ -35,16 +35,16 @@ struct TransducerArray {
 TransducerArray usx_array();
 
 /// One AUTD3: 249 transducers on a grid of 18×14 at 10.16 mm pitch without (x, y) = (1, 1), (2, 1)
-/// and (16, 1), counted from 0; 40 kHz, x fastest, facing +z. The origin is the middle of the grid,
-/// as everywhere in D (AUTD3's own is transducer 0). Amplitude 4.386 Pa·m rms.
+/// and (16, 1), counted from 0; 40 kHz, x fastest, facing +z. The origin is the centre of the grid,
+/// as always in D (in AUTD3's own frame it is transducer 0). Amplitude 4.386 Pa·m rms.
 TransducerArray autd3_array();
 
-/// An array that is known by name.
+/// A named array.
 struct ArrayKind {
   const char* name;
   TransducerArray (*make)();
 };
-/// All of them; the first is the default.
+/// Returns all named arrays; the first is the default.
 std::span<const ArrayKind> array_kinds();
 
 /// Checks an array.
@@ -72,7 +72,8 @@ struct Wave {
   double number = 0.0;      ///< k [rad/m]
   double absorption = 0.0;  ///< α [Np/m], (M5)
 };
-/// Takes some exponentials: keep the result for repeated calls of `propagate`.
+/// Computes the wave in a medium. Evaluates several exponentials: reuse the result for repeated
+/// calls of `propagate`.
 Wave wave(const TransducerArray& array, const Medium& medium);
 
 /// Complex rms acoustic pressure at p for unit drive of transducer i, (A1): A·D(θ)/r·e^{(ik − α)r}
@@ -83,8 +84,8 @@ std::complex<double> propagate(const TransducerArray& array, const Wave& wave, s
 std::complex<double> propagate(const TransducerArray& array, const Medium& medium, std::size_t i,
                                const Vec3& p);
 
-/// Phases [rad] that focus the array on one point, (A3): −k r_i (naive focus). out.size() ==
-/// position.size().
+/// Computes the phases [rad] that focus the array on one point, (A3): −k r_i (naive focus).
+/// @pre out.size() == position.size().
 void focus_phases(const TransducerArray& array, const Medium& medium, const Vec3& focus,
                   std::span<double> out);
 

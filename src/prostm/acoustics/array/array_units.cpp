@@ -5,10 +5,10 @@
 namespace prostm {
 namespace {
 
-constexpr double kSame = 1e-4;  // [m], as files have it
+constexpr double kSame = 1e-4;  // tolerance [m]: the resolution of files
 
-/// Whether transducers first, first + 1, … are a unit moved as a whole: neighbours in the sequence,
-/// and transducers and the first one, are as far apart.
+/// Returns whether transducers first, first + 1, … are a rigidly moved copy of `unit`: distances
+/// between consecutive transducers, and from each to the first one, are the same.
 bool is_unit(const TransducerArray& array, std::size_t first, const TransducerArray& unit) {
   const auto same = [&](std::size_t i, std::size_t j) {
     const double there = (array.position[first + i] - array.position[first + j]).norm(),
@@ -37,7 +37,7 @@ ArrayUnit unit_at(const TransducerArray& array, std::size_t first, std::size_t c
     unit.centre += array.position[i] / static_cast<double>(count);
     normals += array.normal[i];
   }
-  // normals that cancel have no mean
+  // normals that cancel have no mean direction
   if (normals.norm() > 1e-6) unit.normal = normals.normalized();
   return unit;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// The units, such as several AUTD3s, that an array is joined from.
+/// The units of a joined array, such as several AUTD3s.
 
 #include <vector>
 
@@ -14,9 +14,9 @@ struct ArrayUnit {
   Vec3 normal = Vec3::UnitZ();  ///< unit vector along the mean of the normals in D
 };
 
-/// Returns the units of an array in the order of its transducers: as many as it is a sequence of
-/// usx_array()s or of autd3_array()s, each moved as a whole; else one.
-/// @pre validate(array) accepts it.
+/// Returns the units of an array in the order of its transducers: if the array is a sequence of
+/// rigidly moved usx_array()s or autd3_array()s, one unit for each; else a single unit.
+/// @pre validate(array) passes.
 std::vector<ArrayUnit> units_of(const TransducerArray& array);
 
 }  // namespace prostm

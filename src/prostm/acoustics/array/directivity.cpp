@@ -10,7 +10,7 @@
 namespace prostm {
 namespace {
 
-/// (A8) at 0, 10, … 90°. The values of the data sheet as AUTD3's own field model uses them.
+/// (A8) at 0, 10, … 90°: the values of the data sheet that AUTD3's own field model uses.
 constexpr std::array<double, 10> kSheet = {1.0,   1.0,   1.0,   0.891, 0.708,
                                            0.501, 0.355, 0.251, 0.200, 0.178};
 

@@ -27,7 +27,7 @@ TransducerDynamics::TransducerDynamics(const TransducerSettings& settings, std::
 }
 
 void TransducerDynamics::step(std::span<const std::complex<double>> drives) {
-  // remainders below this count as silence, or they would fade into slow subnormal numbers
+  // smaller remainders are set to 0; otherwise they would decay into slow subnormal numbers
   constexpr double kSilence = 1e-60;  // squared magnitude
   for (std::size_t i = 0; i < output_.size(); ++i) {
     const std::complex<double> end = gain_ * drives[i];

@@ -1,5 +1,5 @@
 #pragma once
-/// Response of transducers to their drives over time.
+/// Dynamic response of transducers to their drives.
 
 #include <complex>
 #include <span>
@@ -12,8 +12,8 @@ struct TransducerSettings {
   double frequency = 40e3;    ///< carrier [Hz]
   double quality = 28.6;      ///< Q of the resonance
   double detuning = 0.0;      ///< resonance − carrier [Hz]
-  double sample_rate = 40e3;  ///< rate at which drives change [Hz]
-  bool memoryless = false;    ///< whether the output equals the drive at once
+  double sample_rate = 40e3;  ///< rate of the drives [Hz]
+  bool memoryless = false;    ///< whether the output follows the drive without delay
 };
 
 /// Time constant τ = Q/(πf) of the envelope [s], (A9): 0.228 ms for the defaults.
@@ -29,7 +29,7 @@ class TransducerDynamics {
   /// 1000, |detuning| above a tenth of the frequency, sample_rate not in 1 kHz to 10 MHz.
   TransducerDynamics(const TransducerSettings& settings, std::size_t transducers);
 
-  /// Plays one sample with these drives, one for each transducer, |q| ≤ 1. Allocates nothing.
+  /// Advances by one sample with these drives, one per transducer, |q| ≤ 1. Allocates nothing.
   /// @pre drives.size() == output().size()
   void step(std::span<const std::complex<double>> drives);
   /// The envelopes at the end of the last sample; they replace q in (A1).

@@ -18,7 +18,7 @@ using Eigen::MatrixXcd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-constexpr Index kChunk = 256;    // samples that are added up in single precision
+constexpr Index kChunk = 256;    // samples summed in single precision
 constexpr Index kRowBlock = 48;  // rows of C per task
 
 void check(const LoopDrives& drives) {
@@ -38,7 +38,7 @@ void check(const LoopDrives& drives) {
   }
 }
 
-/// Row-major, the order in which its blocks are added up.
+/// Row-major, the order in which its blocks are computed.
 using Covariance =
     Eigen::Matrix<std::complex<double>, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -103,7 +103,7 @@ Eigen::MatrixXcf covariance_factor(const LoopDrives& drives, WorkerPool& pool, d
     Index next = 0;
     const double most = left.maxCoeff(&next);
     if (most <= enough) break;
-    // the pivot's column less what the earlier columns account for
+    // the pivot's column minus the contribution of earlier columns
     VectorXcd column = c.col(next);
     column.noalias() -= factor.leftCols(rank) * factor.row(next).head(rank).adjoint();
     factor.col(rank) = column / std::sqrt(most);

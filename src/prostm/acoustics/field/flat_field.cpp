@@ -12,15 +12,15 @@ namespace {
 constexpr int kTaps = 16;
 constexpr int kBefore = kTaps / 2 - 1;        // points of the interpolation before the cell's own
 constexpr double kBandwidthTimesStep = 0.97;  // (A24): an error of 2e-6 along each axis
-constexpr double kNear = 50e-3;               // transducers nearer than this need every point [m]
-constexpr double kGrazing = 0.05;             // cosine below which a beam may end [1]
+constexpr double kNear = 50e-3;               // distance to transducers below which step is 1 [m]
+constexpr double kGrazing = 0.05;             // cosine below which a beam may be cut off [1]
 constexpr int kLargestStep = 64;
 constexpr std::size_t kMostValues = std::size_t{1} << 28;  // pressures kept at once, 1 GB
 
 using Weights = Eigen::Matrix<float, kTaps, 1>;
 using Course = Eigen::Map<Eigen::VectorXf>;
 
-/// Lagrange's weights at a share of the way from point kBefore to the next.
+/// Lagrange's weights at fraction `share` between point kBefore and the next.
 Weights weights_at(double share) {
   Weights out;
   for (int i = 0; i < kTaps; ++i) {
@@ -33,7 +33,7 @@ Weights weights_at(double share) {
   return out;
 }
 
-/// The points that are computed: every step-th of the raster, and some around it.
+/// The computed points: every step-th of the raster, and some around it.
 struct Coarse {
   Coarse(const FlatRaster& raster, int by)
       : step(by), rows((raster.rows - 1) / by + kTaps), cols((raster.cols - 1) / by + kTaps) {
@@ -53,11 +53,11 @@ struct Coarse {
 
   int step, rows, cols;
   SurfacePoints points;
-  std::vector<Weights> weights;  // of a cell's phase between two points
+  std::vector<Weights> weights;  // for each position of a cell between two points
 };
 
 /// Returns the largest difference between two transducers' wave vectors along the plane at a point
-/// [rad/m]: no pressure varies faster. Infinity where the field is not that of a band.
+/// [rad/m], the spatial bandwidth of the pressure. Infinity where the field is not band-limited.
 double bandwidth_at(const PackedArray& packed, const Vec3& point, const FlatRaster& raster) {
   const double pitch = raster.right.norm();
   std::vector<Vec2> along;
@@ -156,7 +156,7 @@ LoopPressure flat_loop_pressure(const PackedArray& packed, const Medium& medium,
   }
   validate_frames(frames, basis.samples);
   const Coarse coarse(raster, step);
-  // a part of the loop for each sample
+  // one frame per sample
   const std::size_t samples = basis.samples;
   const std::vector<float> table =
       loop_pressure(packed, medium, basis, coarse.points, static_cast<int>(samples), pool).frame;

@@ -11,7 +11,7 @@ namespace prostm {
 namespace {
 
 constexpr double kReach = 20e-3, kStep = 0.25e-3;  // half length and step of the lines [m]
-constexpr double kLowest = 0.1;  // least share of the focus's pressure that is fitted
+constexpr double kLowest = 0.1;  // points below this share of the focus's pressure are not fitted
 
 Eigen::VectorXcf focusing_drives(const PackedArray& packed, const Medium& medium,
                                  const Vec3& focus) {
@@ -25,7 +25,7 @@ Eigen::VectorXcf focusing_drives(const PackedArray& packed, const Medium& medium
 }
 
 /// Returns σ of the main lobe along a line through the focus. Fits ln(P₀/P) = s²/2σ² with each
-/// point weighted by P², so that errors count as they would in P itself.
+/// point weighted by P², so that errors are weighted as in a fit of P itself.
 double fitted_width(const PackedArray& packed, const Medium& medium, const Eigen::VectorXcf& drives,
                     const Vec3& focus, const Vec3& normal, const Vec3& direction, double level) {
   SurfacePoints line;

@@ -20,20 +20,21 @@ struct FocusWidth {
 
 /// Fits a Gaussian by least squares along both directions, (A22), where the pressure is above a
 /// tenth of that at the focus.
-/// @param normal of the surface, and `x` along it: unit vectors at a right angle.
-/// @throws std::invalid_argument for a focus that propagation_to() refuses, or a surface that faces
+/// @param normal unit normal of the surface. @param x unit vector along the surface.
+/// @throws std::invalid_argument for a focus that propagation_to() rejects, or a surface that faces
 /// away from the whole array.
 FocusWidth focus_width(const PackedArray& packed, const Medium& medium, const Vec3& focus,
                        const Vec3& normal, const Vec3& x);
 
-/// A focus at `height` above the array's plane and `offset` beside its axis along x, on a surface
-/// turned by `tilt` about y so that it faces away from the axis; `along` lies in that direction.
+/// A focus at `height` above the array's plane and distance `offset` from its axis along x, on a
+/// surface rotated by `tilt` about y so that it faces away from the axis; FocusWidth::along is in
+/// that direction.
 struct FocusWidthEntry {
   double height = 0.0, offset = 0.0;  ///< [m]
   double tilt = 0.0;                  ///< [rad]
   FocusWidth width;
 };
-/// Computes all combinations, tilt fastest. @throws as focus_width() does.
+/// Computes the widths of all combinations, tilt fastest. @throws as focus_width() does.
 std::vector<FocusWidthEntry> focus_width_table(const PackedArray& packed, const Medium& medium,
                                                std::span<const double> heights,
                                                std::span<const double> offsets,

@@ -49,8 +49,8 @@ float mean_of(std::span<const float> x) {
   return static_cast<float>(course_of(x).cast<double>().mean());
 }
 
-/// Calls f(first point, number of points, scratch, thread) for all blocks. Each thread has its own
-/// scratch, which holds the rows of G at the points and their product with `right`.
+/// Calls f(first point, number of points, scratch, thread) for all blocks of points. Each thread
+/// has its own scratch, which holds the rows of G at the points and their product with `right`.
 template <class F>
 void for_blocks(const PackedArray& packed, const SurfacePoints& surface, const PackedMatrix& right,
                 WorkerPool& pool, F&& f) {
@@ -200,7 +200,7 @@ LoopPressure loop_pressure(const PackedArray& packed, const Medium& medium, cons
   std::vector<Course> courses(static_cast<std::size_t>(pool.threads()), Course(course.cols()));
   for_blocks(packed, surface, factor, pool,
              [&](std::size_t first, std::size_t count, const Scratch& s, std::size_t thread) {
-               // combine the basis's fields at these points to those of each sample
+               // combine the basis fields at these points to the field of each sample
                Course& c = courses[thread];
                complex_product({s.z_re.data(), s.z_im.data(), count, factor.cols()}, course, 0,
                                c.re.data(), c.im.data());

@@ -35,7 +35,7 @@ std::vector<float> radiation_pressure(const PackedArray& packed, const Medium& m
 
 /// Mean radiation pressure [Pa] over the loop at each point, (A20) with (A21): Σ |(G L)_m|²
 /// replaces the mean of |(G a_k)_m|². For drives of focal points the error is within 1e-5 of the
-/// largest pressure. The same for any number of threads.
+/// largest pressure. The result does not depend on the number of threads.
 /// @throws as validate() and covariance_factor() do, and std::invalid_argument if the drives are
 /// not those of the array.
 std::vector<float> mean_radiation_pressure(const PackedArray& packed, const Medium& medium,
@@ -44,18 +44,18 @@ std::vector<float> mean_radiation_pressure(const PackedArray& packed, const Medi
 
 /// Radiation pressure over a loop [Pa].
 struct LoopPressure {
-  /// All zeros. @param parts are `frames`.
+  /// Initialises all values to 0. @param parts value of `frames`.
   LoopPressure(std::size_t points, int parts);
-  /// Sets the values of a point from its pressure in all samples.
+  /// Sets the values of a point. @param pressure its pressure in every sample.
   void take(std::size_t point, std::span<const float> pressure);
 
   std::vector<float> mean;      ///< over all samples, one per point
-  std::vector<float> envelope;  ///< largest of all samples, one per point
-  int frames;                   ///< number of equal parts that the loop is cut into
+  std::vector<float> envelope;  ///< maximum over all samples, one per point
+  int frames;                   ///< number of equal parts into which the loop is divided
   std::vector<float> frame;     ///< mean over each part: points × frames
 };
 
-/// The drives of a loop in a basis that all samples share, a_k ≈ Q Qᴴ a_k.
+/// The drives of a loop in a basis common to all samples, a_k ≈ Q Qᴴ a_k.
 struct LoopBasis {
   /// @throws as covariance_factor() does, and std::invalid_argument if the drives are not those of
   /// the array.
@@ -66,7 +66,7 @@ struct LoopBasis {
   PackedMatrix course;  ///< Qᴴ a_k, sample by sample
 };
 
-/// Checks the number of parts that a loop is cut into.
+/// Checks the number of parts into which a loop is divided.
 /// @throws std::invalid_argument unless it is 0 or a divisor of the number of samples.
 void validate_frames(int frames, std::size_t samples);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// From transducers to points: the matrix that focus solvers work on.
+/// The propagation matrix from transducers to points, input of the focus solvers.
 
 #include <Eigen/Core>
 #include <span>

@@ -10,11 +10,11 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-// A vector holds transducers, so that few points are as fast as many. At 0.5 m the phase is 400
-// rad, which single precision would resolve only to 2e-5 rad. So r² is computed in double
+// The lanes of a vector are transducers, so that few points take no longer per point than many. At
+// 0.5 m the phase is 400 rad, which single precision resolves only to 2e-5 rad. So r² is in double
 // precision, from |p|² − 2 p·t + |t|², and with r₀ its root in single precision
 //   kr/π = r₀ k/π + (r² − r₀²) (k/π)/(2 r₀),
-// where the first term is reduced to the nearest whole half turn in double precision and the
+// where the first term is reduced modulo half turns in double precision and the
 // second is small.
 HWY_BEFORE_NAMESPACE();
 namespace prostm {
@@ -107,8 +107,8 @@ HWY_INLINE V polynomial_beam(const PackedArray& packed, V cosine) {
   return hn::IfThenZeroElse(hn::Lt(cosine, hn::Zero(D())), value);
 }
 
-/// D(θ) from the table. `chord`, the squared distance between the unit vectors along the way and
-/// along the normal, is 4 sin²(θ/2), which is exact also for small θ.
+/// D(θ) from the table. `chord`, the squared distance between the unit vectors along the direction
+/// and along the normal, is 4 sin²(θ/2), which is accurate also for small θ.
 HWY_INLINE V table_beam(const PackedArray& packed, V chord) {
   const D d;
   const DI di;
@@ -122,7 +122,7 @@ HWY_INLINE V table_beam(const PackedArray& packed, V chord) {
   return hn::IfThenElseZero(hn::Le(chord, set(2.0F)), value);
 }
 
-/// D(θ) along the ways from the transducers from n on.
+/// D(θ) in the directions of the transducers from n on.
 HWY_INLINE V directivity_of(const PackedArray& packed, const Direction& way, std::size_t n) {
   const D d;
   const Direction normal{hn::LoadU(d, packed.normal_x.data() + n),
@@ -159,7 +159,7 @@ Absorption absorption_around(const PackedArray& packed, const Vec3& p) {
           static_cast<float>(std::exp(-alpha * middle)), alpha * packed.reach < kSmall};
 }
 
-/// One point, in the form that all lanes use.
+/// One point, as constants of the computation in all lanes.
 struct Point {
   double x2, y2, z2, square;  // −2x, −2y, −2z, |p|²
   float x, y, z;
@@ -176,7 +176,7 @@ HWY_INLINE VD square_distance(const PackedArray& packed, const Point& p, std::si
   return hn::MulAdd(hn::LoadU(dd, packed.z.data() + n), hn::Set(dd, p.z2), sum);
 }
 
-/// The ways from transducers to a point.
+/// Distances and directions from transducers to a point.
 struct Way {
   V r, per_r;
   Direction direction;
@@ -197,7 +197,7 @@ HWY_INLINE Way way_from(const PackedArray& packed, const Point& p, double per_me
   return way;
 }
 
-/// The same in single precision throughout.
+/// Same, in single precision throughout.
 HWY_INLINE Way way_from_single(const PackedArray& packed, const Point& p, double per_metre,
                                std::size_t n) {
   const D d;

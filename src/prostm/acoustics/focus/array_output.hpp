@@ -1,6 +1,6 @@
 #pragma once
-/// The output of an array that plays focal points: solved drives and the transducers' response to
-/// them.
+/// Simulated output of an array that emits focal points: the solved drives, and the response of the
+/// transducers.
 
 #include <complex>
 #include <span>
@@ -16,14 +16,14 @@ struct ArrayOutputSettings {
   TransducerSettings transducer;
 };
 
-/// Plays one sample after another; allocates nothing after construction.
+/// Simulates one sample after another; allocates nothing after construction.
 class ArrayOutput {
  public:
   /// Starts silent. @throws std::invalid_argument as LiveFocusSolver and TransducerDynamics do.
   ArrayOutput(const TransducerArray& array, const Medium& medium,
               const ArrayOutputSettings& settings);
 
-  /// Plays one sample.
+  /// Advances by one sample.
   void step(std::span<const LiveFocus> foci) noexcept;
 
   /// Drives q of the last sample, |q| ≤ 1, one for each transducer.
@@ -32,7 +32,7 @@ class ArrayOutput {
   std::span<const std::complex<double>> envelopes() const { return transducers_.output(); }
   const LiveFocusSolver& solver() const { return solver_; }
 
-  /// Forgets what was played and falls silent.
+  /// Resets the solver and silences the transducers.
   void reset();
 
  private:

@@ -23,7 +23,7 @@ constexpr int kReferenceFactor = 50;    // iterations of the reference per itera
 constexpr double kConverged = 1e-12;    // share of an eigenvector's or the pressures' square norm
 constexpr double kFirstDamping = 1e-3;  // in (A15), relative to the mean of the diagonal of JJᵀ
 constexpr double kDamping = 1e-2;       // in (A17), relative to the mean of its diagonal
-constexpr double kLeastDamping = 1e-9;  // added in case no phase changes anything
+constexpr double kLeastDamping = 1e-9;  // added in case all gradients are 0
 constexpr double kLeastShare = 1e-6;    // share of the pressure of a focal point alone
 constexpr double kMostWeight = 10.0;    // highest weight in (A16); the lowest is its inverse
 constexpr double kLargestDamping = 1e12;  // reached if no step lowers the error
@@ -71,7 +71,7 @@ VectorXcd gs_pat(const Propagation& g, const VectorXd& target, const VectorXcd& 
   return b * with_phases(target, directions(p));
 }
 
-/// Phases of the focal points with which their naive foci add up most.
+/// Returns the phases of the focal points at which their naive foci reinforce each other most.
 VectorXcd eigenvector_phases(const Propagation& g, const VectorXd& target, const VectorXcd& phase) {
   const MatrixXcd r = g * back_propagation(g) * target.cast<Complex>().asDiagonal();
   VectorXcd v = phase.normalized();
@@ -113,7 +113,7 @@ Eigen::MatrixXd phase_gradients(const Propagation& g, const VectorXcd& p, const 
   return -turned.imag();
 }
 
-/// Turns the phases of q by these angles [rad].
+/// Shifts the phases of q by these angles [rad].
 VectorXcd turned(const VectorXcd& q, const VectorXd& angle) {
   return q.cwiseProduct(VectorXcd(angle.unaryExpr([](double t) { return std::polar(1.0, t); })));
 }
@@ -240,7 +240,7 @@ FocusSolution solve_foci(const Propagation& propagation, const Eigen::VectorXd& 
   const double largest = out.drive.cwiseAbs().maxCoeff();
   if (largest > 0.0) out.drive /= largest;
   out.pressure = propagation * out.drive;
-  // scale down to the targets if a largest drive of 1 exceeds them
+  // scale down to the targets if they are exceeded at a largest drive of 1
   const double reached = level_of(out.pressure, shares);
   if (reached > highest) {
     out.drive *= highest / reached;

@@ -1,5 +1,5 @@
 #pragma once
-/// Drives of an array that make several focal points at the same time.
+/// Drives of an array for several simultaneous focal points.
 
 #include <array>
 #include <string_view>
@@ -34,15 +34,15 @@ struct FocusSettings {
 struct FocusSolution {
   Eigen::VectorXcd drive;     ///< q, N; |q_n| <= 1
   Eigen::VectorXcd pressure;  ///< G q [Pa, rms], M
-  double level = 0.0;         ///< share of the targets that is reached together: Σ a |Gq| / Σ a²
+  double level = 0.0;         ///< reached share of the targets as a whole: Σ a |Gq| / Σ a²
 };
 
-/// Finds drives whose pressures at the focal points have the magnitudes `target`. If that is more
-/// than the array can do, all levels are lowered by one factor, no more than |q| ≤ 1 requires; none
-/// is clipped.
+/// Finds drives whose pressures at the focal points have the magnitudes `target`. If the array
+/// cannot reach them, all are scaled by the largest common factor that satisfies |q| ≤ 1; none is
+/// clipped individually.
 /// @param target a, M [Pa, rms].
-/// @param start phases [rad] of the focal points to begin with, M; 0 if empty. The phases of the
-/// previous solution keep drives from jumping.
+/// @param start initial phases [rad] of the focal points, M; 0 if empty. Pass the phases of the
+/// previous solution to avoid jumps of the drives.
 /// @throws std::invalid_argument for sizes that disagree, no focal point or more than transducers,
 /// a target that is negative or not finite, no target above 0, and a focal point that no transducer
 /// reaches.

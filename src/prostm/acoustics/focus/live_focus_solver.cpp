@@ -19,18 +19,18 @@ constexpr int kMost = static_cast<int>(kMaxLiveFoci);
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
 using SmallJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, 2 * kMost>;
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
-constexpr float kFarthest = 10.0F;    // largest coordinate of focal points, as of transducers [m]
+constexpr float kFarthest = 10.0F;    // largest coordinate of focal points and transducers [m]
 constexpr float kSilent = 1e-4F;      // amplitudes up to this are silent
 constexpr float kLeastShare = 1e-6F;  // share of the pressure of a focal point alone
 constexpr float kMostWeight = 10.0F;  // highest weight in (A16); the lowest is its inverse
-constexpr float kLeastSum = 0.1F;     // of phasors, over their rms, in the gradients of (A23)
-constexpr double kMostChange = 0.3;   // of a c in a step of (A23)
-// scale of the changes of c across its direction in (A23), beside those along it
+constexpr float kLeastSum = 0.1F;     // least sum of phasors over their rms, in gradients of (A23)
+constexpr double kMostChange = 0.3;   // largest change of a c in a step of (A23)
+// scale of changes of c perpendicular to it in (A23), relative to those along it
 constexpr double kAcross = 0.3;
-constexpr float kCloseEnough = 0.05F;   // relative error of a share that (A23) leaves
-constexpr int kMoreIterations = 2;      // of (A23), where a share is not close enough
+constexpr float kCloseEnough = 0.05F;   // relative error of a share that (A23) accepts
+constexpr int kMoreIterations = 2;      // further iterations of (A23) above that error
 constexpr double kDamping = 1e-2;       // in (A17) and (A23), relative to the mean diagonal
-constexpr double kLeastDamping = 1e-9;  // added in case no phase changes anything
+constexpr double kLeastDamping = 1e-9;  // added in case all gradients are 0
 
 static_assert(ComplexRows::kBlock == PackedArray::kRowBlock);  // rows of G are written in place
 
@@ -56,7 +56,7 @@ Complex direction(const Complex& z) {
   return size > 0.0F ? z / size : Complex(1.0F);
 }
 
-/// Returns a box that holds every point nearer than kNearestPoint to a transducer.
+/// Returns a box that contains every point nearer than kNearestPoint to a transducer.
 Eigen::AlignedBox3f box_around(const TransducerArray& array) {
   Eigen::AlignedBox3f box;
   const Eigen::Vector3f margin = Eigen::Vector3f::Constant(static_cast<float>(kNearestPoint));
@@ -67,7 +67,7 @@ Eigen::AlignedBox3f box_around(const TransducerArray& array) {
   return box;
 }
 
-/// Whether p is at least kNearestPoint from every transducer; nearer, (A1) does not hold.
+/// Returns whether p is at least kNearestPoint from every transducer, so that (A1) is valid.
 bool is_clear(const PackedArray& packed, const Eigen::AlignedBox3f& box, const Eigen::Vector3f& p) {
   if (!box.contains(p)) return true;
   const Vec3 at = p.cast<double>();
@@ -158,7 +158,7 @@ void LiveFocusSolver::add(const LiveFocus& focus, std::size_t place) {
   ++count_;
 }
 
-/// Sets the phasors of the focal point that is being added.
+/// Sets the phasors of the focal point being added.
 void LiveFocusSolver::set_phasors() {
   const float *re = g_.re(count_), *im = g_.im(count_);
   float *unit_re = phasors_.re(count_), *unit_im = phasors_.im(count_);
@@ -169,7 +169,7 @@ void LiveFocusSolver::set_phasors() {
   }
 }
 
-/// (A11). Like the next two functions, sets the drives and returns the largest |q|.
+/// (A11). Like the next two functions, computes the drives and returns the largest |q|.
 float LiveFocusSolver::superpose() {
   for (std::size_t m = 0; m < count_; ++m) c_[m] = wanted_[m] * alone_[m] / squares_[m];
   return solving::back_propagate(g_, {c_.data(), count_}, drive_);
@@ -233,7 +233,7 @@ float LiveFocusSolver::add_phasors() {
   return 1.0F;
 }
 
-/// Sets what each focal point still gets from the samples before.
+/// Computes the pressure at each focal point that remains from previous samples.
 void LiveFocusSolver::recall() {
   if (settings_.memory == 0.0) return;
   solving::propagate_drives(g_, played_, {left_.data(), count_});
@@ -248,8 +248,8 @@ void LiveFocusSolver::play(Complex turn) noexcept {
     played_.set(0, n, kept * played_.at(0, n) + (1.0F - memory) * drive_.at(0, n));
 }
 
-/// One step of Gauss-Newton on c, mostly along their directions: the shares depend on |c| steeply
-/// where two are alike. Where focal points are close, phases must change too.
+/// One Gauss-Newton step on c. Mostly changes the magnitudes, since the shares depend steeply on
+/// |c| where two are nearly equal; for close focal points the phases must change, too.
 void LiveFocusSolver::correct_phasors() {
   set_phasor_gradients();
   const auto count = static_cast<Eigen::Index>(count_);
@@ -282,9 +282,9 @@ void LiveFocusSolver::correct_phasors() {
   }
 }
 
-/// Writes the derivatives of the drives' phases by c_l along and across its direction to the real
-/// and imaginary parts of row l of `turns_`, and those of |y_m|/alone by the phases to row m of
-/// `pulls_`.
+/// Writes the derivatives of the drives' phases with respect to c_l, along and perpendicular to it,
+/// to the real and imaginary parts of row l of `turns_`, and those of |y_m|/alone with respect to
+/// the phases to row m of `pulls_`.
 void LiveFocusSolver::set_phasor_gradients() {
   std::array<Complex, kMaxLiveFoci> c_direction, y_direction;
   float squares = 0.0F;
@@ -308,7 +308,7 @@ void LiveFocusSolver::set_phasor_gradients() {
   }
 }
 
-/// The largest relative error of a share wanted.
+/// Returns the largest relative error of a wanted share.
 float LiveFocusSolver::largest_error() const {
   float largest = 0.0F;
   for (std::size_t m = 0; m < count_; ++m) {
@@ -319,8 +319,7 @@ float LiveFocusSolver::largest_error() const {
   return largest;
 }
 
-/// Takes over the phases reached, and raises the weights of focal points that are below their
-/// share.
+/// Stores the phases reached, and raises the weights of focal points that are below their share.
 void LiveFocusSolver::reweigh(float level) {
   float sum = 0.0F, all = 0.0F;
   for (std::size_t m = 0; m < count_; ++m) {
@@ -336,8 +335,7 @@ void LiveFocusSolver::reweigh(float level) {
   }
 }
 
-/// (A17): one Gauss-Newton step on the phases of the drives. @pre y_ and level_ are those of the
-/// drives.
+/// (A17): one Gauss-Newton step on the phases of the drives. @pre y_ and level_ are up to date.
 void LiveFocusSolver::even_out() {
   std::array<float, kMaxLiveFoci * kMaxLiveFoci> products;
   for (std::size_t m = 0; m < count_; ++m) c_[m] = direction(y_[m]) / alone_[m];
@@ -368,7 +366,7 @@ float LiveFocusSolver::reach() {
   return level_of_y();
 }
 
-/// Computes y_ = G a, where a are the outputs, (A10), when drives have been scaled and played.
+/// Computes y_ = G a, where a are the transducers' outputs, (A10), after playing the scaled drives.
 /// @return its level.
 float LiveFocusSolver::reach_after_memory() {
   const float level = reach();

@@ -24,7 +24,7 @@ int parts_of(const SkinPatch& patch, double finest) {
   return 2 * static_cast<int>(std::ceil(0.5 * patch.cell / finest * (1.0 - 1e-9)));
 }
 
-/// Cuts each cell of a mask into parts × parts.
+/// Divides each cell of a mask into parts × parts.
 std::vector<std::uint8_t> refined(const SkinPatch& patch, const std::vector<std::uint8_t>& skin,
                                   int parts) {
   std::vector<std::uint8_t> out;

@@ -7,29 +7,29 @@
 
 namespace prostm {
 
-/// Properties of the skin, from measurements of its surface waves; none is fitted to the effects of
+/// Properties of the skin, from measurements of its surface waves; none is fitted to the percept of
 /// moving focal points.
 struct SkinSettings {
   double slow_speed = 3.0;  ///< speed of surface waves towards 0 Hz [m/s]
-  double fast_speed = 7.0;  ///< plateau of their speed at high frequencies [m/s]
+  double fast_speed = 7.0;  ///< speed of surface waves towards high frequencies [m/s]
   double loss = 0.14;       ///< tan δ of the tissue's shear modulus at 1 Hz
   double density = 1100.0;  ///< [kg/m³]
 };
 
-/// Plateau [m/s] and tan δ in the sources: low, nominal and high.
+/// Fast speeds [m/s] and tan δ in the literature: low, nominal and high.
 inline constexpr std::array<double, 3> kSkinFastSpeeds = {5.0, 7.0, 10.0};
 inline constexpr std::array<double, 3> kSkinLosses = {0.07, 0.14, 0.21};
-/// Returns each plateau with each loss, the plateau changing slowest; [4] is nominal.
+/// Returns all combinations of fast speed and loss, fast speed changing slowest; [4] is nominal.
 std::array<SkinSettings, 9> skin_settings_interval();
 
-/// A soft, incompressible half-space whose shear modulus relaxes once (a standard linear solid).
+/// A soft, incompressible half-space with one relaxation time (a standard linear solid).
 /// Motion is Re(W e^{+iωt}).
 class SkinModel {
  public:
   /// @throws std::invalid_argument for slow_speed not in 0.5 to 50 m/s, fast_speed not in 0.5 to 50
-  /// m/s or below slow_speed, loss not in 0 to 1 or more than any relaxation from the slow to the
-  /// fast speed has at 1 Hz, density not in 500 to 2000 kg/m³. A skin without loss has one speed:
-  /// loss must be 0 if both speeds are the same, and only then.
+  /// m/s or below slow_speed, loss not in 0 to 1 or above the largest possible at 1 Hz for a
+  /// relaxation between the two speeds, density not in 500 to 2000 kg/m³, or a loss that is 0
+  /// although the speeds differ, or above 0 although they are the same.
   explicit SkinModel(const SkinSettings& settings);
 
   const SkinSettings& settings() const { return settings_; }
@@ -43,15 +43,16 @@ class SkinModel {
   std::complex<double> compliance(double wave_number, double omega) const;
   /// Wave number k − iα of the surface wave e^{i(ωt − kx) − αx} [rad/m], (S4). @pre ω ≥ 0
   std::complex<double> surface_wave_number(double omega) const;
-  /// Part of (S3) that is the surface wave: its pole alone, (S14). Far from a load it is all that
-  /// is left. @pre as for compliance()
+  /// Contribution of the surface wave to (S3): its pole alone, (S14). It dominates far from a load.
+  /// @pre as for compliance()
   std::complex<double> wave_compliance(double wave_number, double omega) const;
   /// Strength A [1/(m Pa)] of the pole: wave_compliance = A / (k² − k_R²), (S14). @pre ω > 0
   std::complex<double> wave_strength(double omega) const;
   /// Phase speed ω / Re k [m/s] of the surface wave, (S4). @pre ω > 0
   double phase_speed(double omega) const;
   /// Complex angular frequency Ω [rad/s] of the surface wave of real wave number k > 0, which moves
-  /// with Re Ω and decays as e^{−Im Ω t}, (S5). Re Ω = 0 where c_∞ > 3 c_0 and the wave creeps.
+  /// with Re Ω and decays as e^{−Im Ω t}, (S5). Re Ω = 0 where c_∞ > 3 c_0 and the wave is
+  /// overdamped.
   std::complex<double> surface_frequency(double wave_number) const;
 
  private:

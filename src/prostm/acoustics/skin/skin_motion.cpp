@@ -24,7 +24,7 @@ void SkinMotion::choose_harmonics(double period, int samples, double highest) {
       std::min((samples - 1) / 2, static_cast<int>(highest * period * (1 + 1e-9)));
   if (harmonics < 1) {
     throw std::invalid_argument(
-        "highest must be at least 1/period, or there is no harmonic to respond with");
+        "highest must be at least 1/period, the frequency of the first harmonic");
   }
   period_ = period;
   samples_ = samples;
@@ -45,7 +45,8 @@ void SkinMotion::load(const PressureLoop& loop) {
         "the loop must have the period and the samples that prepare() was given, and a pressure "
         "for each sample and cell");
   }
-  // sums take the same time for every length of a loop; a transform is slow for large prime factors
+  // direct sums take the same time for any number of samples; an FFT is slow for large prime
+  // factors
   for (std::size_t first = 0; first < cells; first += kBlock) {
     const std::size_t count = std::min(kBlock, cells - first);
     for (std::size_t k = 0; k < wave_.size(); ++k) {

@@ -1,6 +1,6 @@
 #pragma once
-/// The steady vibration of a patch of skin under a periodic pressure, harmonic by harmonic: the
-/// part that every model of the skin has in common. (S9) and (S10) of docs/design/skin.md.
+/// The steady vibration of a patch of skin under a periodic pressure, by harmonics: the part common
+/// to all models of the skin. (S9) and (S10) of docs/design/skin.md.
 
 #include <complex>
 #include <span>
@@ -16,20 +16,20 @@ struct SkinPatch {
   std::size_t size() const { return static_cast<std::size_t>(rows * cols); }
 };
 
-/// Radiation pressure on a patch over one period. Callers bring paths of different periods to a
-/// common one.
+/// Radiation pressure on a patch over one period. For paths of different periods, the caller
+/// chooses a common one.
 struct PressureLoop {
   double period = 0.0;               ///< [s]
   int samples = 0;                   ///< K, at the times k·period/K
-  std::span<const double> pressure;  ///< K·rows·cols, sample by sample [Pa]
+  std::span<const double> pressure;  ///< K × rows·cols [Pa]
 };
 
 /// Displacement of a patch by harmonics of the draw rate.
 class SkinMotion {
  public:
   const SkinPatch& patch() const { return patch_; }
-  /// Number N of harmonics; n runs from 1 to N. The mean over a period, harmonic 0, is left out,
-  /// since it does not move the skin.
+  /// Number N of harmonics; n runs from 1 to N. The mean over a period, harmonic 0, is excluded,
+  /// since it causes no vibration.
   int harmonics() const { return harmonics_; }
   /// Frequency n/period of harmonic n [Hz].
   double frequency(int n) const { return n / period_; }
@@ -47,7 +47,7 @@ class SkinMotion {
   /// Checks a loop and writes the pressure P_n [Pa] of (S9) in place of the displacement. Allocates
   /// nothing. @throws std::invalid_argument if the loop is not of the period, samples and cells.
   void load(const PressureLoop& loop);
-  /// Harmonic n as `load` left it, to be overwritten with W_n.
+  /// Returns P_n of load(), to be overwritten with W_n.
   std::span<std::complex<double>> harmonic(int n);
 
  private:

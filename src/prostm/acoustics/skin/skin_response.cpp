@@ -15,14 +15,14 @@ using Complex = std::complex<double>;
 
 // step of the integral over wave numbers [rad/m]: a fraction of the pole's width due to the loss
 constexpr double kWaveNumberStep = 1.0;
-// radii of the table in a cell's edge. The integrals have no wave number above π/cell, so that the
-// interpolation's error is below (π/kPerCell)^12 (1·3·…·11/64)²/12! = 8e-10 of the highest's share.
+// table entries per cell edge. The integrals have no wave number above π/cell, so the interpolation
+// error is below (π/kPerCell)^12 (1·3·…·11/64)²/12! = 8e-10 of the highest wave number's part.
 constexpr int kPerCell = 8;
 
 }  // namespace
 
-/// Lagrange's weights for a radius between the radii of the table; the Green's functions are even,
-/// so that radii below 0 are those above.
+/// Lagrange's weights for a radius between entries of the table. The Green's functions are even, so
+/// radii below 0 are mirrored.
 SkinResponse::RadiusPlace SkinResponse::place_of(double radius) {
   RadiusPlace place;
   place.first = static_cast<int>(radius) - kTaps / 2 + 1;
@@ -42,7 +42,7 @@ SkinResponse::SkinResponse(const SkinModel& model, const SkinPatch& patch, SkinP
       part_(part),
       fft_(fast_length(2 * patch.rows - 1), fast_length(2 * patch.cols - 1)) {
   if (model.relaxation_time() == 0.0) {
-    throw std::invalid_argument("the skin must have a loss, or it never comes to a steady state");
+    throw std::invalid_argument("the skin must have a loss, or it never reaches a steady state");
   }
   padded_.resize(static_cast<std::size_t>(fft_.rows() * fft_.cols()));
   make_radii();

@@ -1,6 +1,6 @@
 #pragma once
-/// The steady vibration of skin without bounds under a periodic pressure: a sum over the harmonics
-/// of the draw rate, (S9) to (S11) of docs/design/skin.md.
+/// The steady vibration of infinite skin under a periodic pressure: a sum over the harmonics of the
+/// draw rate, (S9) to (S11) of docs/design/skin.md.
 
 #include <array>
 #include <complex>
@@ -13,14 +13,14 @@
 
 namespace prostm {
 
-/// Which part of the compliance T of (S3) responds.
+/// The part of the compliance T of (S3) to use.
 enum class SkinPart {
   Whole,
   Near,  ///< T without the surface wave's pole, (S14)
 };
 
-/// The response of a patch of skin without bounds: waves that leave the patch do not come back. The
-/// pressure is taken as band-limited by the spacing of cell centres and of samples.
+/// The response of a patch of infinite skin: waves that leave the patch do not come back. The
+/// pressure is assumed to be band-limited by the spacing of cell centres and of samples.
 class SkinResponse : public SkinMotion {
  public:
   /// @throws std::invalid_argument for rows or cols not in 1 to 512, cell not in 0.1 to 20 mm, or a
@@ -40,8 +40,8 @@ class SkinResponse : public SkinMotion {
  private:
   static constexpr int kTaps = 12;
   struct RadiusPlace {
-    int first = 0;                       // radius of the table
-    std::array<double, kTaps> weight{};  // of this and the radii after it
+    int first = 0;                       // index of the first radius in the table
+    std::array<double, kTaps> weight{};  // weights of this and the following radii
   };
   static RadiusPlace place_of(double radius);
   void make_radii();
@@ -53,7 +53,7 @@ class SkinResponse : public SkinMotion {
   Fft2 fft_;
   // Green's functions: the distances (radii) between cells, and J_0(k r) for even radii
   std::vector<int> radius_of_;       // index of the radius of each cell of the padded raster
-  std::vector<RadiusPlace> places_;  // of each radius in the table
+  std::vector<RadiusPlace> places_;  // position of each radius in the table
   Eigen::MatrixXd bessel_;           // radii of the table × wave numbers
   std::vector<std::complex<double>> kernels_;  // their transforms, padded, one for each harmonic
   std::vector<std::complex<double>> padded_;

@@ -11,7 +11,7 @@
 namespace prostm {
 namespace {
 
-// an absorbing layer lies between these depths [m]; the bottom is held
+// an absorbing layer lies between these depths [m]; the bottom is fixed
 constexpr double kClear = 0.08, kDepth = 0.5;
 constexpr double kCoarsest = 5e-3;  // element [m]
 constexpr double kGrowth = 1.2;     // largest growth of the elements with depth

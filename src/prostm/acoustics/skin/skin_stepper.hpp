@@ -1,6 +1,6 @@
 #pragma once
-/// The skin in time, one pattern along the surface at a time: the slow reference for the harmonic
-/// sum.
+/// Time-domain model of the skin, for one wave number along the surface at a time: the slow
+/// reference for the harmonic sum.
 
 #include <Eigen/SparseCholesky>
 
@@ -9,8 +9,8 @@
 namespace prostm {
 
 /// Steps the half-space from rest under the pressure P(t) cos(kx) on its surface, (S12): finite
-/// elements in depth for the displacement itself, centred differences in time. Shares only the
-/// material with (S3).
+/// elements in depth for the displacement, central differences in time. Shares only the material
+/// with (S3).
 class SkinStepper {
  public:
   /// @param step [s]: errors fall with (ω · step)². @throws std::invalid_argument with a message:
@@ -28,7 +28,7 @@ class SkinStepper {
   double step_;
   double slow_, rise_;   // c_0²/ξ and (c_∞² − c_0²)/ξ [m²/s²]
   double keep_, renew_;  // factors of the memory per step
-  double load_;          // factor of a pressure, divided by the density [m³/kg]
+  double load_;          // factor on the pressure: one over the density [m³/kg]
   // degrees of freedom: w and its slope at each node, from the surface down
   Matrix stiffness_, receding_;  // K, and M − C step/2
   Matrix mass_;

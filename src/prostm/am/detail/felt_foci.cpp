@@ -10,13 +10,13 @@ namespace prostm {
 namespace {
 
 constexpr double kMm = 1e3;         // per metre
-constexpr int kStarts = 4;          // in phase, then phases drawn at random
-constexpr int kEvaluations = 20;    // of each start
+constexpr int kStarts = 4;          // the first in phase, the others with random phases
+constexpr int kEvaluations = 20;    // evaluations per start
 constexpr float kFirstStep = 0.3F;  // length of the first step, over the largest pressure
-constexpr float kNorm = 16.0F;      // exponent of the norm that stands for the largest
-constexpr float kTiny = 1e-6F;      // keeps a silent focus from having no direction
+constexpr float kNorm = 16.0F;      // exponent of the norm that approximates the maximum
+constexpr float kTiny = 1e-6F;      // keeps the gradient of a silent focus defined
 
-/// cos or sin of a moment of the period.
+/// Cosine and sine of the phase at a moment of the period.
 struct Moment {
   float cosine, sine;
 };
@@ -43,7 +43,7 @@ FeltFoci::FeltFoci(const AmSettings& settings)
   for (Eigen::VectorXf* v : {&field_, &pull_}) v->setZero(static_cast<Eigen::Index>(kFeltCells));
 }
 
-/// Takes over the places of the foci. Their pressure has one harmonic, the modulation's.
+/// Sets the positions of the foci. Their pressure has one harmonic, the modulation.
 void FeltFoci::set_foci(const TargetField& target, const FocalPoints& foci) {
   foci_ = foci.size();
   sources_.clear();
@@ -81,8 +81,9 @@ float FeltFoci::pressure(std::span<const float> parts, std::size_t focus) const 
   return std::hypot(parts[2 * focus], parts[2 * focus + 1]) + kTiny;
 }
 
-/// Sets unit_ to the parts for an output of 1: the norm over a period of the foci's pressures
-/// together, which an array must hold; by_moment_ to its derivatives by these. @return the output.
+/// Sets unit_ to the parts scaled to an output of 1, and by_moment_ to the derivatives of the
+/// output with respect to the total pressure at each moment. The output is the norm of this
+/// pressure over a period, which the array has to sustain. @return the output.
 float FeltFoci::normalise(std::span<const float> parts) {
   static const auto kMoments = moments<16>();
   float most = 0.0F;
@@ -118,7 +119,7 @@ float FeltFoci::add_field(std::span<float> by_pressure) {
   return value;
 }
 
-/// (B8) as a function of the parts.
+/// Returns (B8) as a function of the parts, and computes its gradient.
 float FeltFoci::cost(std::span<const float> parts, std::span<float> gradient) {
   static const auto kMoments = moments<16>();
   const float output = normalise(parts);
@@ -132,7 +133,7 @@ float FeltFoci::cost(std::span<const float> parts, std::span<float> gradient) {
     const float share = unit_[i] / pressure(unit_, i / 2);
     by_part_[i] = weight * by_part_[i] + (1.0F - weight) * by_pressure[i / 2] * share;
   }
-  // more output changes nothing
+  // the cost does not depend on the output, so the gradient along the parts is removed
   float along = 0.0F;
   for (std::size_t i = 0; i < all; ++i) along += by_part_[i] * unit_[i];
   for (std::size_t i = 0; i < all; ++i) {
@@ -179,12 +180,12 @@ int FeltFoci::choose(const TargetField& target, double maximum, FocalPoints& foc
     lowest = descent_.lowest();
     best = at_;
   }
-  // as loud as the fit, if its output suffices
+  // as loud as the fit, as far as the fit's output allows
   const std::span<const float> found = std::span(best).first(2 * foci_);
   const float output = normalise(found);
   loss_.evaluate(std::span(unit_).first(found.size()));
   const float scale = std::min(wanted / loss_.loudness(), 1.0F) * fitted_output / output;
-  // the strongest focus has phase 0: a delay of all does not matter
+  // a common delay has no effect, so the strongest focus gets phase 0
   std::size_t strongest = 0;
   for (std::size_t f = 1; f < foci_; ++f)
     strongest = pressure(best, f) > pressure(best, strongest) ? f : strongest;

@@ -1,5 +1,5 @@
 #pragma once
-/// Pressures and phases of AM's foci that make what is felt look like the target, (B8) and (B9).
+/// Pressures and phases of AM's foci whose percept resembles the target, (B8) and (B9).
 
 #include <array>
 #include <span>
@@ -12,19 +12,19 @@
 
 namespace prostm {
 
-/// Sized once; nothing else allocates.
+/// Optimises the percept of AM's foci. Only construction allocates.
 class FeltFoci {
  public:
   explicit FeltFoci(const AmSettings& settings);
 
-  /// Chooses the foci's pressures anew, and their phases. @param maximum the target's largest
-  /// pressure, > 0. @pre some focus has pressure. @return evaluations used.
+  /// Replaces the foci's pressures and phases, starting from the given pressures. @param maximum
+  /// the target's largest pressure, > 0. @pre some focus has pressure. @return evaluations used.
   int choose(const TargetField& target, double maximum, FocalPoints& foci);
 
  private:
   static constexpr std::size_t kMost = kMaxPaths;
-  /// Two parts of each focus, a quarter of a period apart: amplitudes of either sign, one after the
-  /// other; their sum is the focus.
+  /// Two components per focus, a quarter of a period apart: signed amplitudes, whose sum is the
+  /// modulation of the focus.
   using Parts = std::array<float, 2 * kMost>;
 
   void set_foci(const TargetField& target, const FocalPoints& foci);
@@ -43,7 +43,7 @@ class FeltFoci {
   std::vector<float> reach_;          // … and its φ there
   Eigen::VectorXf field_, pull_;
   std::vector<FeltSource<float>> sources_;
-  Parts at_{}, by_part_{}, unit_{};  // where it is; gradient; parts over the output
+  Parts at_{}, by_part_{}, unit_{};  // variables; gradient; parts over the output
   std::array<float, 16> by_moment_{};
 };
 

@@ -5,9 +5,9 @@
 namespace prostm {
 namespace {
 
-constexpr double kRounding = 1e-9;  // above the error of the distances [m]
+constexpr double kRounding = 1e-9;  // margin, larger than the error of the distances [m]
 
-/// Squared distance to the bounds of a hand; 0 inside.
+/// Returns the squared distance to the bounds of a hand; 0 inside.
 double outside_squared(const HandShape& shape, const Vec3& p) {
   return (shape.lower() - p).cwiseMax(p - shape.upper()).cwiseMax(0.0).squaredNorm();
 }

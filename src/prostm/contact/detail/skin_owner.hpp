@@ -1,5 +1,5 @@
 #pragma once
-/// The hand on whose skin a point lies. Private to contact.
+/// Assigns points on the skin to hands. Private to contact.
 
 #include <array>
 #include <span>
@@ -8,18 +8,18 @@
 
 namespace prostm {
 
-/// Returns the hand with the smaller signed distance, the first of equals; the reference for
+/// Returns the hand with the smaller signed distance; ties go to the first. The reference for
 /// SkinOwner. @pre one or two shapes.
 int nearest_hand(std::span<const HandShape> shapes, const Vec3& p_D) noexcept;
 
-/// Gives the same answer, mostly without computing a distance. A point farther from a hand's bounds
-/// than from the skin belongs to the other hand. A distance changes at most as fast as the point
-/// moves. So all points in a ball around a computed one have its owner; the radius is half the
-/// difference between the two distances there.
+/// Returns the same as nearest_hand(), mostly without computing a distance. A point farther from a
+/// hand's bounds than from the skin belongs to the other hand. Distances are 1-Lipschitz, so all
+/// points in a ball around a computed point have the same owner; the radius is half the difference
+/// between the two distances there.
 class SkinOwner {
  public:
-  /// Refers to `shapes` from now on. @param near every queried point is at most this far from the
-  /// nearer skin, or inside a hand [m]. @pre at most two shapes.
+  /// Sets the shapes and keeps a reference to them. @param near upper bound of the distance of
+  /// every queried point outside the hands to the nearer skin [m]. @pre at most two shapes.
   void set(std::span<const HandShape> shapes, double near) noexcept;
   /// Returns the hand of a point. @pre at least one shape.
   int of(const Vec3& p_D) noexcept;
@@ -34,8 +34,8 @@ class SkinOwner {
 
   std::span<const HandShape> shapes_;
   double near_squared_ = 0.0;
-  std::array<Ball, 8> balls_;  // the latest ones
-  std::size_t next_ = 0;       // the next to be replaced
+  std::array<Ball, 8> balls_;  // the most recent balls
+  std::size_t next_ = 0;       // the ball to replace next
 };
 
 }  // namespace prostm

@@ -6,7 +6,7 @@
 namespace prostm {
 namespace {
 
-constexpr int kNone = std::numeric_limits<int>::max();  // a level that no ray reaches
+constexpr int kNone = std::numeric_limits<int>::max();  // level of a column without hand
 
 /// Interpolates between nodes. @param q in cells from the grid's corner, inside the grid.
 double between_nodes(const HandRaster& raster, const Vec3& q) {
@@ -74,7 +74,7 @@ void SkinRays::find_lowest_nodes() noexcept {
     int* level =
         &node_level_[static_cast<std::size_t>(j) * pitch + static_cast<std::size_t>(box.lower[0])];
     std::fill_n(level, count, kNone);
-    // downwards, so that the lowest stays
+    // from the top down, so that the lowest remains
     for (int k = box.upper[2]; k >= box.lower[2]; --k) {
       const float* d = &raster_->node_distance[grid_.node_index(box.lower[0], j, k)];
       for (int n = 0; n < count; ++n) level[n] = d[n] < 0.0F ? k : level[n];
@@ -117,14 +117,14 @@ double SkinRays::column(int i, int j) const noexcept {
   constexpr double kMissed = std::numeric_limits<double>::quiet_NaN();
   int k = cell_level_[column_index(i, j)];
   if (k == kNone) return kMissed;
-  // in the middle of a column the distance is linear from level to level, and the lowest cell's
-  // floor is outside unless the hand reaches through the grid's floor
+  // along the axis of a column the distance is linear between levels, and the floor of the lowest
+  // cell is outside the hand unless the hand extends through the grid's floor
   double d0 = mean_of_level(i, j, k);
   if (d0 < 0.0) return kMissed;
   const int top = std::min(raster_->box.upper[2], grid_.nz);
   for (; k < top; ++k) {
     const double d1 = mean_of_level(i, j, k + 1);
-    // march() steps by half a cell, along the same line
+    // march() interpolates on the same line, in steps of half a cell
     if (d1 < 0.0) return grid_.p_DF.z() + grid_.cell * (k + d0 / (d0 - d1));
     d0 = d1;
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// Rays to the skin, through the distances that a raster holds at its nodes. Private to contact.
+/// Rays to the skin, through the distances at the nodes of a raster. Private to contact.
 
 #include <vector>
 
@@ -12,8 +12,8 @@ inline constexpr double kMarchStep = 0.5;  ///< step of a ray through the distan
 /// Returns t of the first crossing from outside to inside along start + t·direction, 0 <= t <=
 /// t_max [m]; negative without a crossing, or if the start is inside: such skin does not face the
 /// array. The distance is trilinear between nodes and HandRaster::kFar outside the grid. It is
-/// sampled every kMarchStep and taken as linear in between. The reference for SkinRays.
-/// @param direction unit.
+/// sampled every kMarchStep and interpolated linearly. The reference for SkinRays.
+/// @param direction unit vector.
 double march(const HandRaster& raster, const Vec3& start, const Vec3& direction, double t_max);
 
 /// Finds the same crossings with fewer samples: trilinear values are negative only in cells with a
@@ -22,19 +22,20 @@ class SkinRays {
  public:
   explicit SkinRays(const GridShape& grid);
 
-  /// Refers to `raster` from now on; call again when it changes. Allocates nothing.
-  /// @pre raster.grid is the grid of the constructor, but for its corner.
+  /// Sets the raster and keeps a reference to it; call again when it changes. Allocates nothing.
+  /// @pre raster.grid is the grid of the constructor, except for its corner.
   void set(const HandRaster& raster) noexcept;
 
   /// Box of all cells that may have a node inside a hand.
   const CellBox& box() const { return box_; }
-  /// Returns the crossing of the ray along z through the middle of a column, z [m] in D; NaN
-  /// without a crossing. march() finds the same one from a node's height below the hand.
+  /// Returns the crossing of the ray along z through the centre of a column, z [m] in D; NaN
+  /// without a crossing. march() finds the same one if it starts below the hand, at the height of a
+  /// node.
   double column(int i, int j) const noexcept;
-  /// Returns the unit normal of the skin at a crossing, into the hand: against the gradient of the
-  /// distance within the crossing's cell. @pre in the grid.
+  /// Returns the unit normal of the skin at a crossing, pointing into the hand: the negative
+  /// gradient of the distance in the crossing's cell. @pre the crossing is in the grid.
   Vec3 inwards(const Vec3& p_D) const noexcept;
-  /// Does the same as march(), up to rounding.
+  /// Same as the function march(), up to rounding.
   double march(const Vec3& start, const Vec3& direction, double t_max) const noexcept;
 
  private:

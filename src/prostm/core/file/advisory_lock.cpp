@@ -16,7 +16,7 @@ void warn_once(const std::string& path, int error) {
   static std::atomic_flag warned;
   if (warning_receiver == nullptr || warned.test_and_set()) return;
   warning_receiver(
-      fmt::format("the file system of {} has no locks ({}): nothing keeps another program from "
+      fmt::format("the file system of {} has no locks ({}): nothing prevents another program from "
                   "writing the same file meanwhile",
                   path, std::generic_category().message(error)));
 }

@@ -33,7 +33,7 @@ class Descriptor {
   Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
   Descriptor& operator=(Descriptor&&) = delete;
   int get() const { return fd_; }
-  /// Returns 0 or the error; a full disk may show only now.
+  /// Returns 0 or the error; a full disk may be detected only here.
   int close() {
     const int fd = fd_;
     fd_ = -1;
@@ -61,7 +61,7 @@ int write_all(int fd, std::string_view bytes) {
       path, reason(error)));
 }
 
-/// Writes to a device or a pipe, which has no temporary name beside it.
+/// Writes to a device or a pipe, without a temporary file.
 void write_in_place(const std::string& path, std::string_view bytes) {
   Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
   if (file.get() < 0) fail_to_write(path, errno);
@@ -69,8 +69,9 @@ void write_in_place(const std::string& path, std::string_view bytes) {
   if (const int error = file.close(); error != 0) fail_to_write(path, error);
 }
 
-/// Opens a new, empty file beside `path` for writing and sets `temporary` to its name. That has the
-/// same length whatever the file's, which may be as long as the file system takes.
+/// Opens a new, empty file beside `path` for writing and sets `temporary` to its name. The
+/// temporary name does not depend on the length of the file's, which may be the longest that the
+/// file system allows.
 int open_temporary(const std::string& path, std::string& temporary) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   for (int attempt = 0; attempt < 100; ++attempt) {
@@ -94,7 +95,7 @@ std::string reason_to_read(const std::string& path, int error) {
 
 /// Opens an ordinary file; refuses anything else before it is read.
 Descriptor open_to_read(const std::string& path, struct stat* status) {
-  // a pipe is opened without waiting for somebody to write into it
+  // opens a pipe without waiting for a writer
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0 || ::fstat(file.get(), status) != 0) {
     throw InputError(fmt::format("{} cannot be read: {}", path, reason_to_read(path, errno)));
@@ -116,8 +117,8 @@ std::filesystem::path followed(std::filesystem::path path) {
   return path;
 }
 
-/// Renaming over a protected file succeeds, so this checks its mode. Root may write everywhere, so
-/// a file whose mode lets nobody write counts as protected for root too.
+/// Renaming over a protected file succeeds, so this checks its mode. Root may write anywhere, so a
+/// file whose mode allows nobody to write also counts as protected for root.
 void check_protection(const std::string& path) {
   constexpr mode_t kAnybody = S_IWUSR | S_IWGRP | S_IWOTH;
   struct stat status {};
@@ -147,11 +148,11 @@ bool temporary_serves(const std::string& path, std::string& target) {
 struct Identity {
   dev_t device = 0;
   ino_t number = 0;
-  std::string name;  // in the folder with that number; empty for an existing file
+  std::string name;  // name in the folder; empty for an existing file
   bool operator==(const Identity&) const = default;
 };
 
-/// Empty unless the file is ordinary or could be created in an existing folder.
+/// Nothing unless the file is ordinary or could be created in an existing folder.
 std::optional<Identity> identity_of(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0) {
@@ -245,7 +246,7 @@ void write_file(const std::string& path, std::string_view bytes) {
     write_in_place(path, bytes);
     return;
   }
-  // the new content appears whole or not at all
+  // the new content appears completely or not at all
   std::string temporary;
   Descriptor file(open_temporary(target, temporary));
   if (file.get() < 0) fail_to_write(path, errno);

@@ -20,17 +20,17 @@
 namespace prostm {
 namespace {
 
-/// A process, as other processes of the same machine and other machines tell it from all others.
+/// Identifies a process uniquely, for other processes of the same machine and other machines.
 struct Owner {
   std::string host;
-  std::string machine;  // checksum of the machine's id, which is not to be published
+  std::string machine;  // checksum of the machine's id, which must stay secret
   std::string boot;     // changes with every start of the machine
   std::string pids;     // the namespace that counts `pid`: a container has its own
   long long pid = 0;
-  std::string started;  // clock ticks since the machine's start: numbers are used again
+  std::string started;  // start in clock ticks since boot, since process numbers are reused
 };
 
-/// The beginning of a small file of the system; empty if it cannot be read.
+/// The beginning of a small system file; empty if it cannot be read.
 std::string text_of(const std::string& path) {
   constexpr std::size_t kMost = 4096;
   std::ifstream file(path, std::ios::binary);
@@ -59,11 +59,11 @@ std::string pid_namespace() {
   return std::filesystem::read_symlink("/proc/self/ns/pid", ignored).string();
 }
 
-/// When a process started: field 22 of its stat (proc(5)). Empty for one that is not there, and for
-/// one that ended and whose parent has not asked yet.
+/// When a process started: field 22 of its stat (proc(5)). Empty for a process that does not exist
+/// or is a zombie.
 std::string start_of(long long pid) {
   const std::string stat = text_of(fmt::format("/proc/{}/stat", pid));
-  std::size_t at = stat.rfind(')');  // the second field is a name, which may hold anything
+  std::size_t at = stat.rfind(')');  // the second field is a name, which may contain anything
   if (at == stat.npos || stat.compare(at, 3, ") Z") == 0) return {};
   for (int field = 2; field < 22 && at != stat.npos; ++field) at = stat.find(' ', at + 1);
   if (at == stat.npos) return {};
@@ -84,7 +84,7 @@ std::string text_of_owner(const Owner& owner) {
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-/// Nothing for what is no lock file of prostm, or not whole.
+/// Nothing if it is not a complete lock file of prostm.
 std::optional<Owner> owner_from(const std::string& text) {
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object()) return {};
@@ -100,15 +100,16 @@ enum class State { Runs, Gone, Elsewhere };
 
 State state_of(const Owner& owner, const Owner& here) {
   if (owner.host != here.host || owner.machine != here.machine) return State::Elsewhere;
-  // without a machine's id another machine of this name cannot be told from this one, restarted
+  // without a machine id, another machine of this name cannot be distinguished from this one after
+  // a restart
   if (owner.boot != here.boot) return here.machine.empty() ? State::Elsewhere : State::Gone;
   if (owner.pids != here.pids || here.started.empty()) return State::Elsewhere;
   const std::string started = start_of(owner.pid);
   return !started.empty() && started == owner.started ? State::Runs : State::Gone;
 }
 
-/// Creates the lock file. @return 0, EEXIST if it exists, or another error, after which there is no
-/// file.
+/// Creates the lock file. @return 0, EEXIST if it exists, or another error, in which case there is
+/// no file.
 int create(const std::string& path, const std::string& text) {
   const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (fd < 0) return errno;
@@ -121,8 +122,8 @@ int create(const std::string& path, const std::string& text) {
   return error;
 }
 
-/// Removes a lock file that holds `text`. Renames it first: another process may have replaced it
-/// since it was read, and that one is put back.
+/// Removes a lock file that holds `text`. Renames it first: if another process has replaced it
+/// since it was read, that one is restored.
 void remove_if(const std::string& path, const std::string& text) {
   if (text_of(path) != text) return;
   const std::string aside = fmt::format("{}.{}", path, ::getpid());
@@ -141,7 +142,7 @@ LockFile::LockFile(const std::string& path, ForeignLock foreign, const std::stri
     : path_(path + ".lock") {
   const Owner here = this_process();
   text_ = text_of_owner(here);
-  constexpr int kTries = 10;  // others may replace a stale lock file at the same time
+  constexpr int kTries = 10;  // other processes may replace a stale lock file at the same time
   for (int i = 0; i < kTries; ++i) {
     const int error = create(path_, text_);
     if (error == 0) return;
@@ -155,7 +156,7 @@ LockFile::LockFile(const std::string& path, ForeignLock foreign, const std::stri
     const std::optional<Owner> owner = owner_from(held);
     const State state = owner ? state_of(*owner, here) : State::Elsewhere;
     if (state == State::Runs) {
-      throw InputError(fmt::format("{} is being written by another program, {}; end that one first",
+      throw InputError(fmt::format("{} is being written by another program, {}; close it first",
                                    path, words_of(owner)));
     }
     if (state == State::Elsewhere && foreign == ForeignLock::Respected) {
@@ -167,11 +168,11 @@ LockFile::LockFile(const std::string& path, ForeignLock foreign, const std::stri
     notice_ = state == State::Gone
                   ? fmt::format("{} was left by {}, which no longer runs; it is replaced", path_,
                                 words_of(owner))
-                  : fmt::format("{} of {} is replaced, since {} is given", path_, words_of(owner),
+                  : fmt::format("{} of {} is replaced because {} is given", path_, words_of(owner),
                                 override_option);
     remove_if(path_, held);
   }
-  throw InputError(path_ + " is replaced by other programs again and again; end those first");
+  throw InputError(path_ + " is repeatedly replaced by other programs; close them first");
 }
 
 LockFile::~LockFile() {

@@ -1,5 +1,5 @@
 #pragma once
-/// Addresses on a network, as people write them.
+/// Network addresses in text form.
 
 #include <cstdint>
 #include <string>
@@ -12,12 +12,12 @@ struct HostPort {
   std::string host;
   std::uint16_t port = 0;
 
-  /// HOST:PORT, with brackets around an IPv6 address.
+  /// Returns HOST:PORT, with brackets around an IPv6 address.
   std::string text() const;
 };
 
-/// Reads SCHEME://HOST, or SCHEME://HOST:PORT. IPv6 addresses stand in brackets.
-/// @param usual_port port where none is given.
+/// Reads SCHEME://HOST, or SCHEME://HOST:PORT. IPv6 addresses must be in brackets. @param
+/// usual_port default port.
 /// @throws InputError with a sentence.
 HostPort host_port(const std::string& text, std::string_view scheme, std::uint16_t usual_port);
 

@@ -18,7 +18,8 @@ namespace {
 
 constexpr int kMaxDepth = 32;
 
-/// Checks the depth of brackets outside strings, so that a file of brackets costs no memory.
+/// Checks the depth of brackets outside strings before parsing, so that a file of brackets uses no
+/// memory.
 bool is_too_deep(std::string_view text) {
   int depth = 0;
   bool in_string = false;
@@ -45,8 +46,8 @@ std::string position_text(std::string_view text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, before.size() - line_start + 1);
 }
 
-/// Whether the parser stopped at a number that JSON does not have, as Python and JavaScript print
-/// it.
+/// Whether the parser stopped at NaN or infinity, which JSON does not have, as printed by Python
+/// and JavaScript.
 bool stopped_at_no_number(std::string_view text, std::size_t byte) {
   constexpr std::string_view kLetters = "+-abcdefghijklmnopqrstuvwxyz";
   const std::size_t at = byte == 0 ? 0 : byte - 1;
@@ -61,7 +62,7 @@ bool stopped_at_no_number(std::string_view text, std::size_t byte) {
   return word == "nan" || word == "inf" || word == "infinity";
 }
 
-/// Returns a value for a message: short, and valid text whatever the file holds.
+/// Returns a value for a message: short, and valid text for any file.
 std::string shown(const nlohmann::json& value) {
   if (value.is_array()) return "an array";
   if (value.is_object()) return "an object";
@@ -115,7 +116,7 @@ nlohmann::json parse_json(std::string_view text, const std::string& file) {
                                              "there is no value"
                                            : ""));
   } catch (const nlohmann::json::exception& e) {
-    // the only other error of the parser is a number that no double holds
+    // the only other error of the parser is a number outside the range of a double
     const std::string what = e.what();
     const std::size_t quote = what.find('\'');
     throw InputError(fmt::format("{}: the number {} is out of range; numbers must be finite", file,
@@ -212,10 +213,10 @@ std::string to_text(const nlohmann::ordered_json& document) {
 }
 
 double to_milli(double x) {
-  // 1000 times a double near the largest overflows
+  // 1000 times a very large double overflows
   if (!std::isfinite(x) || std::abs(x) > 1e300) return std::numeric_limits<double>::quiet_NaN();
 
-  // the first to divide back to x: the product with few digits, the product, or its neighbours
+  // the first that divides back to x: the product with few digits, the product, or its neighbours
   const double product = x * 1000.0;
   const double few_digits = std::strtod(fmt::format("{:.15g}", product).c_str(), nullptr);
   constexpr double kInf = std::numeric_limits<double>::infinity();

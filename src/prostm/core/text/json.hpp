@@ -14,12 +14,12 @@ namespace prostm {
 /// More than any field needs: 10⁶ cells with pressure and height at full precision.
 inline constexpr std::size_t kMaxJsonBytes = std::size_t{64} << 20;
 
-/// @throws InputError with line and column: not JSON, cut off, nested deeper than 32, a number
-/// beyond a double's range.
+/// @throws InputError with line and column: not JSON, truncated, nested deeper than 32 levels, a
+/// number beyond the range of a double.
 nlohmann::json parse_json(std::string_view text, const std::string& file);
 
-/// A value of a document with its place there, for error messages. Refers to the document and the
-/// file's name, which must outlive it. Everything throws InputError.
+/// A value of a document with its location, for error messages. Refers to the document and the
+/// file's name, which must outlive it. All functions throw InputError.
 class JsonNode {
  public:
   JsonNode(const nlohmann::json& value, const std::string& file, std::string where = {});
@@ -27,11 +27,11 @@ class JsonNode {
   const nlohmann::json& value() const { return *value_; }
   const std::string& file() const { return *file_; }
   bool has(const char* key) const;  ///< whether this object has such a member that is not null
-  /// @param meaning completes "it must be …" when the member is absent.
+  /// @param meaning completes "it must be …" if the member is missing.
   JsonNode at(const char* key, const char* meaning) const;
   JsonNode at(std::size_t i) const;
-  /// Refuses members that are not in `known`: a mistyped optional member would silently have no
-  /// effect.
+  /// Refuses members that are not in `known`, since a misspelt optional member would be silently
+  /// ignored.
   void allow_only(const std::vector<std::string>& known) const;
   std::size_t array_size() const;
   double number(double low, double high) const;
@@ -52,12 +52,12 @@ class JsonNode {
 /// @throws InputError unless the document is an object with "format": `format`.
 void require_format(const JsonNode& root, const char* format);
 
-/// The document as text: members on lines of their own, arrays of numbers on one line, a matrix row
-/// by row. Numbers are the shortest that read back the same; those that are not finite are null.
+/// The document as text: each member on its own line, arrays of numbers on one line, matrices row
+/// by row. Numbers have the fewest digits that read back the same; non-finite numbers are null.
 std::string to_text(const nlohmann::ordered_json& document);
 
 /// Converts to thousandths for files (m to mm, s to ms), with the fewest digits that read back as
-/// the same value where a double in thousandths can.
+/// the same value, if such a double exists.
 double to_milli(double x);
 inline double from_milli(double thousandths) {
   return thousandths / 1000.0;

@@ -1,5 +1,5 @@
 #pragma once
-/// The names that an enum's values have in files, on the command line and in Python.
+/// Names of enum values in files, on the command line and in Python.
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace prostm {
 
-/// An std::array of names in the order of the values, which count from 0; specialised beside each
-/// enum that has names.
+/// An std::array of names in the order of the values, which start from 0; specialised next to each
+/// enum with names.
 template <class E>
 inline constexpr int kNames = 0;
 
@@ -23,10 +23,10 @@ constexpr std::string_view name_of(E value) {
 /// Returns "a, b or c".
 std::string one_of(std::span<const std::string_view> names);
 
-/// Returns "a, b, or c", "a or b", or "a", with the conjunction given. The entries of help texts.
+/// Returns "a, b, or c", "a or b", or "a", with the given conjunction. For help texts.
 std::string listed(std::span<const std::string> entries, std::string_view conjunction = "or");
 
-/// Returns "must be a, b or c", and for a name that is nearly one of them "; did you mean "b"?".
+/// Returns "must be a, b or c", and for a name similar to one of them also "; did you mean "b"?".
 std::string must_be(std::string_view name, std::span<const std::string_view> names);
 
 /// Returns the value with this name, or nothing.

@@ -45,7 +45,7 @@ std::optional<std::string> nearest_name(std::string_view unknown,
   if (nearest == known.end()) return std::nullopt;
   const std::size_t distance = edit_distance(typed, *nearest);
   const std::size_t tolerance = std::max<std::size_t>(2, nearest->size() / 3);
-  // "foo" is not like "now": at most half of a short name may differ
+  // "foo" is not similar to "now": at most half of a short name may differ
   if (distance > tolerance || 2 * distance > nearest->size()) return std::nullopt;
   return *nearest;
 }

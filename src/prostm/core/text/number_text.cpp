@@ -9,7 +9,7 @@
 namespace prostm {
 
 std::string number_text(double value) {
-  // a whole number reads best without an exponent, as long as people can count its digits
+  // whole numbers are more readable without an exponent, unless they have many digits
   constexpr double kLongest = 1e10;
   const bool whole =
       std::isfinite(value) && std::abs(value) < kLongest && value == std::trunc(value);
@@ -17,7 +17,7 @@ std::string number_text(double value) {
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
                                  whole ? std::chars_format::fixed : std::chars_format::general);
   std::string text(digits.data(), end.ptr);
-  // 1e+06 and 1e-06 are 1e6 and 1e-6
+  // shortens 1e+06 and 1e-06 to 1e6 and 1e-6
   std::size_t exponent = text.find('e');
   if (exponent++ == text.npos) return text;
   if (text[exponent] == '+') text.erase(exponent, 1);

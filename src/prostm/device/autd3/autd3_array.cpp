@@ -19,7 +19,7 @@ namespace {
 using Clock = autd3::Session::Clock;
 
 constexpr std::chrono::milliseconds kRetry{100};
-constexpr double kFastest = 8.0;  // a focal point's jump counts as a step up to this speed [m/s]
+constexpr double kFastest = 8.0;      // speed above which a step of a focal point is a jump [m/s]
 constexpr double kUsualFrames = 1.0;  // per ms, before a link is measured
 
 std::vector<Pose> units_of(const Autd3Setup& setup) {
@@ -60,13 +60,13 @@ struct Autd3Array::Impl {
   void run_loops(const std::stop_token& stop);
   template <class Begin, class Play>
   void keep_running(const std::stop_token& stop, Begin&& begin, Play&& play);
-  void connect_again(const std::stop_token& stop);
+  void reconnect(const std::stop_token& stop);
   DeviceStatus load(std::span<const FocusSample> samples, int foci);
 
   const Autd3Setup setup;
   const std::vector<Pose> units;
-  autd3::Session session;                // of the thread that plays, while it runs
-  std::unique_ptr<SlotEncoder> encoder;  // likewise, or of the one that loads loops
+  autd3::Session session;                // used by the playing thread while it runs
+  std::unique_ptr<SlotEncoder> encoder;  // likewise, or by the thread that loads loops
   autd3::Output output;
   Autd3Budget budget;
   DeviceInfo info;
@@ -91,7 +91,7 @@ Autd3Array::Impl::Impl(const Autd3Setup& s)
       output(session),
       loops(session, output) {
   SlotSettings slots = slots_of(s);
-  const int count = slot_count(slots);  // refuses too many focal points before anything is opened
+  const int count = slot_count(slots);  // throws for too many focal points, before any connection
   if (!session.open(autd3::Session::kOpenTime) || !session.measure())
     throw std::invalid_argument(session.problem());
   link_process = session.link_process();
@@ -103,15 +103,14 @@ Autd3Array::Impl::Impl(const Autd3Setup& s)
   stream = std::make_unique<autd3::Stream>(session, output, *encoder, budget);
   description = fmt::format(
       "{} unit{}, {}; {:.2f} frames per ms; {} slots at {:.1f} kHz, which is {:.2f} mm between "
-      "samples at {:g} m/s; blocks of {:.1f} ms, so {:.0f} to {:.0f} ms from a sample to its "
-      "sound; "
+      "samples at {:g} m/s; blocks of {:.1f} ms, so a latency of {:.0f} to {:.0f} ms; "
       "{:.0f} % of the link",
       units.size(), units.size() == 1 ? "" : "s", session.firmware(), session.frames_per_ms(),
       budget.slots, 1e-3 * budget.sample_rate(), 1e3 * budget.step(), kAutd3DrawSpeed,
       1e3 * budget.block_time, 1e3 * budget.block_time, 2e3 * budget.block_time, 1e2 * budget.load);
 }
 
-/// Whether the link is open, or could be opened again.
+/// Reopens the link if it is closed; false if that fails.
 bool Autd3Array::Impl::is_ready() {
   if (session.is_open() || session.open(autd3::Session::kOpenTime)) {
     link_process = session.link_process();
@@ -136,7 +135,7 @@ void Autd3Array::Impl::keep_running(const std::stop_token& stop, Begin&& begin, 
       works = play();
       hot.store(session.is_hot(), std::memory_order_relaxed);
     }
-    if (!works) connect_again(stop);
+    if (!works) reconnect(stop);
   }
   output.finish();
   link_process = 0;
@@ -153,8 +152,8 @@ void Autd3Array::Impl::run_loops(const std::stop_token& stop) {
       stop, [&] { return loops.begin(step); }, [&] { return loops.play(stop); });
 }
 
-/// Tries to open the link again until it works.
-void Autd3Array::Impl::connect_again(const std::stop_token& stop) {
+/// Retries to open the link until that succeeds.
+void Autd3Array::Impl::reconnect(const std::stop_token& stop) {
   link_process = 0;
   stream->lose();
   set_status(DeviceStatus::Vanished, session.problem());
@@ -174,7 +173,7 @@ DeviceStatus Autd3Array::Impl::load(std::span<const FocusSample> samples, int fo
   autd3::Loop loop;
   loop.foci = foci;
   loop.samples.assign(samples.begin(), samples.end());
-  // the firmware wants two slots at least
+  // the firmware requires at least two slots
   while (loop.length() * encoder->slots() < 2)
     loop.samples.insert(loop.samples.end(), samples.begin(), samples.end());
   const auto slots = static_cast<std::size_t>(encoder->slots()),
@@ -183,7 +182,7 @@ DeviceStatus Autd3Array::Impl::load(std::span<const FocusSample> samples, int fo
   loop.words.assign(units.size(), std::vector<SlotWord>(length * slots));
   std::vector<SlotWord> words(units.size() * slots);
   encoder->reset();
-  // the second time round, phases go on from those of the loop's end
+  // in the second round, phases continue from the loop's end
   for (std::size_t i = 0; i < 2 * length; ++i) {
     const std::size_t s = i % length;
     encoder->encode(std::span(loop.samples).subspan(s * width, width), words);

@@ -17,14 +17,14 @@ namespace prostm {
 
 struct Autd3Settings {
   std::string
-      units;  ///< a file of poses (prostm-autd3/1); empty: one unit, its middle in D's origin
-  double block_time = 0.0;  ///< [s], 10 to 25 ms; 0: as short as the link allows, 10 or 20 ms
-  /// An intensity for each of up to four focal points, by two slots each; false: up to eight focal
-  /// points, which share the largest.
+      units;  ///< a file of poses (prostm-autd3/1); empty: one unit, its middle at D's origin
+  double block_time = 0.0;  ///< [s], 10 to 25 ms; 0: 10 ms if the link allows it, else 20 ms
+  /// Each of up to four focal points has its own intensity and takes two slots; false: up to eight
+  /// focal points share the largest intensity.
   bool weights = true;
 
-  /// X_DU of the units' own frames; none where no file is named.
-  /// @throws InputError about the file.
+  /// Poses X_DU of the units' own frames; empty if no file is named.
+  /// @throws InputError for a bad file.
   std::vector<Pose> poses() const;
 
   void visit(SettingsReader& v) const;
@@ -33,7 +33,7 @@ struct Autd3Settings {
 
 struct Autd3Setup {
   HostPort address{"127.0.0.1", 8080};
-  /// Poses X_DU of the units' own frames, up to 64; empty: one unit, its middle in D's origin.
+  /// Poses X_DU of the units' own frames, up to 64; empty: one unit, its middle at D's origin.
   std::vector<Pose> units = {};
   Medium medium = {};
   int foci = 4;  ///< focal points of a sample
@@ -41,14 +41,14 @@ struct Autd3Setup {
   double block_time = 0.0;  ///< as in Autd3Settings
 };
 
-/// Streams to AUTD3 units, or lets them repeat loops.
+/// Streams to AUTD3 units, or makes them repeat loops.
 ///
-/// The firmware plays two segments in turn; each block of the stream is written to the one that
-/// does not play, and then a modulation that makes it audible until its end. So output falls silent
-/// by itself within two blocks if nothing more comes. A loop is audible for 60 ms at a time. A
-/// process of its own holds the connection, and silences the units as soon as this one ends in any
-/// way. A connection that is lost is opened again, and output begins again; the status is Vanished
-/// meanwhile.
+/// The firmware plays two segments in turn. Each block of the stream is written to the idle
+/// segment, followed by a modulation that makes the block audible until its end. So output falls
+/// silent by itself within two blocks if no more data arrives. A loop is kept audible for 60 ms at
+/// a time. A separate process holds the connection, and silences the units as soon as this process
+/// ends in any way. A lost connection is reopened, and output resumes; until then the status is
+/// Vanished.
 class Autd3Array final : public Device {
  public:
   /// Connects, and measures the link.
@@ -56,7 +56,7 @@ class Autd3Array final : public Device {
   explicit Autd3Array(const Autd3Setup& setup);
   ~Autd3Array() override;
 
-  /// Info of an array whose link takes one frame per ms, without looking for it.
+  /// Info of an array whose link takes one frame per ms, without connecting to it.
   /// @throws std::invalid_argument if the focal points do not fit.
   static DeviceInfo info_of(const Autd3Setup& setup);
 
@@ -65,16 +65,16 @@ class Autd3Array final : public Device {
   std::string problem() const override;
   DeviceStatus start(SampleSource& source) override;
   void stop() override;
-  /// Loads a closed loop for all focal points, as many samples as fit into 65 536 slots. It takes
-  /// over at once, from the same sample on if it is as long as the one that plays and no focal
-  /// point jumps, otherwise in a moment of silence. Refused while a stream plays.
+  /// Loads a closed loop for all focal points, of at most as many samples as fit into 65 536 slots.
+  /// The loop starts at once: at the current sample if it has the length of the playing loop and no
+  /// focal point jumps, otherwise in a short silence. Refused while a stream plays.
   DeviceStatus load_segment(std::span<const FocusSample> samples, int foci) override;
   DeviceStats stats() const override;
   std::int64_t samples() const override;
   double play_time(std::int64_t sample) const override;
   double ask_time(std::int64_t sample) const override;
   bool is_hot() const override;
-  /// Versions of the firmware, the frames per ms that were measured, and what the session costs.
+  /// Versions of the firmware, measured frames per ms, and what the session costs.
   std::string description() const override;
 
   const Autd3Budget& budget() const;
@@ -85,11 +85,11 @@ class Autd3Array final : public Device {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Looks for units for about a second, without changing what they do.
+/// Searches for units for about a second, without changing their output.
 DeviceFinding look_for_autd3(const Autd3Setup& setup);
 
 /// Reads poses of units, {"format": "prostm-autd3/1", "units": [{"position_mm": [x, y, z],
-/// "quaternion": [x, y, z, w]}, …]}: where the middle of each unit is in D, and how it lies.
+/// "quaternion": [x, y, z, w]}, …]}: position of the middle of each unit in D, and its orientation.
 /// @return X_DU of their own frames, whose origin is transducer 0.
 /// @throws InputError with a sentence.
 std::vector<Pose> autd3_units_from_json(std::string_view text, const std::string& file);

@@ -12,8 +12,8 @@
 namespace prostm {
 namespace {
 
-constexpr int kLeastDivider = 4;  // 10 kHz, above which nothing is gained
-constexpr int kMostDivider = 20;  // 2 kHz, below which fingers feel the steps
+constexpr int kLeastDivider = 4;  // 10 kHz: higher rates gain nothing
+constexpr int kMostDivider = 20;  // 2 kHz: at lower rates fingers feel the steps
 constexpr double kMostUrgency = 0.9;
 
 }  // namespace
@@ -42,9 +42,9 @@ Autd3Budget autd3_budget(int slots, int divider, double block_time, double frame
   const double frame_time = 1e-3 / frames_per_ms;
   const double writing = frame_time * (budget.block_frames + 1);
   budget.load = writing / budget.block_time;
-  const double there_is = budget.block_time - autd3::kSeen - autd3::kRamp -
-                          autd3::early(std::max(slow_frame, frame_time));
-  budget.urgency = there_is > 0.0 ? writing / there_is : HUGE_VAL;
+  const double available = budget.block_time - autd3::kSeen - autd3::kRamp -
+                           autd3::early(std::max(slow_frame, frame_time));
+  budget.urgency = available > 0.0 ? writing / available : HUGE_VAL;
   return budget;
 }
 

@@ -12,7 +12,7 @@ const Autd3Settings& settings_of(const DeviceSetup& setup) {
   return setup.settings.of<Autd3Settings>();
 }
 
-/// @throws InputError about the address or the file of the units.
+/// @throws InputError for a bad address or file of units.
 Autd3Setup setup_of(const DeviceSetup& setup) {
   const Autd3Settings& settings = settings_of(setup);
   return {.address = setup.address.empty()

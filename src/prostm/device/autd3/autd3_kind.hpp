@@ -7,7 +7,7 @@ namespace prostm {
 
 DeviceKind autd3_kind();
 
-/// The transducers of all units that the settings place. @throws InputError about their file.
+/// The transducers of all units in the settings. @throws InputError for a bad file of units.
 TransducerArray autd3_transducers(const DeviceSetup& setup);
 
 }  // namespace prostm

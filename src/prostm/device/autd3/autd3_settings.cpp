@@ -1,4 +1,4 @@
-// Settings of AUTD3 units, the file of their places, and the look for them.
+// Settings of AUTD3 units, the file of their poses, and the search for them.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -20,14 +20,14 @@ constexpr std::chrono::milliseconds kLook{400};
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
   v.field({.name = "units",
-           .help = "file with the places of AUTD3 units; empty: one, its middle in the origin",
+           .help = "file with the poses of AUTD3 units; empty: one unit, its middle at the origin",
            .names_file = true},
           s.units);
   v.field({"block_time", "s", 0, 0.025,
            "duration of a block of the stream to AUTD3; 0: as short as the link allows"},
           s.block_time);
   v.field({.name = "weights",
-           .help = "whether focal points have an intensity each, at most four of them then"},
+           .help = "whether each focal point has its own intensity, which allows at most four"},
           s.weights);
 }
 
@@ -45,7 +45,7 @@ std::vector<Pose> autd3_units_from_json(std::string_view text, const std::string
   const JsonNode root(document, file);
   require_format(root, "prostm-autd3/1");
   root.allow_only({"format", "units"});
-  const JsonNode units = root.at("units", "the places of the units, [{…}, …]");
+  const JsonNode units = root.at("units", "the poses of the units, [{…}, …]");
   const std::size_t count = units.array_size();
   if (count < 1 || count > autd3::kMostUnits)
     units.fail(fmt::format("has {} units; it must have 1 to {}", count, autd3::kMostUnits));
@@ -54,10 +54,11 @@ std::vector<Pose> autd3_units_from_json(std::string_view text, const std::string
     const JsonNode unit = units.at(i);
     unit.allow_only({"position_mm", "quaternion"});
     Pose X_DM = Pose::Identity();
-    X_DM.translation() = from_milli(unit.at("position_mm", "where the unit's middle is, [x, y, z]")
-                                        .vec3(-kFarthest, kFarthest));
+    X_DM.translation() =
+        from_milli(unit.at("position_mm", "the position of the unit's middle, [x, y, z]")
+                       .vec3(-kFarthest, kFarthest));
     if (unit.has("quaternion")) {
-      const JsonNode turn = unit.at("quaternion", "how it lies, [x, y, z, w]");
+      const JsonNode turn = unit.at("quaternion", "the unit's orientation, [x, y, z, w]");
       if (turn.array_size() != 4)
         turn.fail(fmt::format("has {} numbers; it must have 4: x, y, z, w", turn.array_size()));
       const auto part = [&](std::size_t k) { return turn.at(k).number(-2.0, 2.0); };

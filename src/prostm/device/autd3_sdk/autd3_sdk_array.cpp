@@ -22,12 +22,12 @@ using std::chrono::milliseconds;
 using Seconds = std::chrono::duration<double>;
 
 constexpr std::int64_t kPeriod = 25'000;  // of 40 kHz [ns]
-constexpr double kRamp = 8e-3;            // of intensity after silence and before it [s]
-constexpr microseconds kMargin{300};      // after a turn, within which the clocks agree
-constexpr microseconds kPoll{500};        // between looks at which bank plays
-constexpr int kMostTurns = 20;            // until a bank must play
+constexpr double kRamp = 8e-3;            // ramp of the intensity from and to silence [s]
+constexpr microseconds kMargin{300};      // wait after a turn, for the error between clocks
+constexpr microseconds kPoll{500};        // between polls of the playing bank
+constexpr int kMostTurns = 20;            // turns within which a bank must play
 constexpr milliseconds kRetry{50};
-// of a block's time: a missed block that its link took longer for is missed because of the link
+// share of a block's time: if the link took longer for a missed block, the link caused the miss
 constexpr double kSlowLink = 0.5;
 constexpr double kUnitWidth = 192e-3;  // [m]
 
@@ -75,13 +75,13 @@ struct Autd3SdkArray::Impl {
   bool write_block(int bank);
   bool wait_for_turn(int bank);
   bool all_play(int bank);
-  bool look_after_units();
+  bool check_units();
   void fall_silent();
-  void connect_again(const std::stop_token& stop);
+  void reconnect(const std::stop_token& stop);
   std::chrono::nanoseconds block_duration() const { return std::chrono::nanoseconds(block_time); }
 
   const Autd3SdkSetup setup;
-  sdk::Session session;  // used by the thread that streams while it runs
+  sdk::Session session;  // used by the streaming thread while it runs
   std::unique_ptr<SlotEncoder> encoder;
   Autd3SdkBudget budget;
   DeviceInfo info;
@@ -93,7 +93,7 @@ struct Autd3SdkArray::Impl {
   std::vector<FocusSample> samples;           // of a block
   std::vector<SlotWord> words;                // of a sample, all units
   std::vector<std::vector<SlotWord>> blocks;  // of each unit
-  std::int64_t block = 0;                     // to be filled next
+  std::int64_t block = 0;                     // next block to fill
   std::int64_t block_time = 0, turn = 0;      // length of a block, next change of banks [ns]
   int playing = 0;                            // bank
   float gain = 0.0F;
@@ -106,7 +106,7 @@ struct Autd3SdkArray::Impl {
   std::string problem;
   DeviceStats stats;
   LinkLoss loss;
-  std::int64_t turn_block = 0;  // a block, and when it began to play
+  std::int64_t turn_block = 0;  // a block, and the time when it began to play
   Clock::time_point turn_time;
 
   std::jthread thread;
@@ -140,12 +140,12 @@ void Autd3SdkArray::Impl::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     bool works = begin_stream();
     while (works && !stop.stop_requested()) works = play_block();
-    if (!works) connect_again(stop);
+    if (!works) reconnect(stop);
   }
   fall_silent();
 }
 
-/// Prepares both banks; a silent block plays at its end.
+/// Prepares both banks; leaves a silent block playing.
 bool Autd3SdkArray::Impl::begin_stream() {
   gain = 0.0F;
   muted = falls = false;
@@ -189,16 +189,16 @@ bool Autd3SdkArray::Impl::play_block() {
     stats.blocks = block;
     stats.late_blocks += missed > 0 && counts ? 1 : 0;
     stats.missed_blocks += missed;
-    // units mute themselves when too little comes over the link
+    // units mute themselves if too few messages arrive over the link
     if (is_slow || !counts) stats.slow_blocks += missed;
     turn_block = block - 1;
     turn_time = session.host_time(turn - block_time);
   }
-  return look_after_units();
+  return check_units();
 }
 
-/// Sees which units are hot or muted. Lets muted ones sound again once they play a silent block.
-bool Autd3SdkArray::Impl::look_after_units() {
+/// Checks which units are hot or muted. Unmutes muted ones once they play a silent block.
+bool Autd3SdkArray::Impl::check_units() {
   unsigned all = 0;
   for (std::size_t u = 0; u < session.units(); ++u) all |= session.state(u);
   hot = (all & sdk::kHot) != 0;
@@ -212,7 +212,7 @@ bool Autd3SdkArray::Impl::look_after_units() {
     ++times_muted;
     return true;
   }
-  // refused as long as what muted it holds; then the next block tries again
+  // units refuse this while the cause of the mute persists; the next block tries again
   session.release_failsafe();
   return session.works();
 }
@@ -238,7 +238,7 @@ void Autd3SdkArray::Impl::fill_block() {
   }
 }
 
-/// Writes the block to a bank, which is to play at the next turn.
+/// Writes the block to a bank, to play at the next turn.
 bool Autd3SdkArray::Impl::write_block(int bank) {
   const std::size_t length = blocks.front().size();
   for (std::size_t first = 0; first < length; first += sdk::kFociPerFrame) {
@@ -263,12 +263,12 @@ bool Autd3SdkArray::Impl::all_play(int bank) {
   return true;
 }
 
-/// Waits until all units play a bank; then `turn` is the end of its block.
+/// Waits until all units play a bank; sets `turn` to the end of its block.
 bool Autd3SdkArray::Impl::wait_for_turn(int bank) {
-  // after a stall the turn is long gone
+  // after a stall the turn is long past
   turn = std::max(turn, session.unit_time(Clock::now()) / block_time * block_time);
   for (int turns = 0; turns < kMostTurns; ++turns, turn += block_time) {
-    // a clock that jumps must not be waited for
+    // do not wait for a clock that has jumped
     const Clock::time_point latest = Clock::now() + 2 * block_duration();
     if (!session.listen(std::min(session.host_time(turn) + kMargin, latest))) return false;
     do {
@@ -283,10 +283,10 @@ bool Autd3SdkArray::Impl::wait_for_turn(int bank) {
     } while (session.listen(Clock::now() + kPoll));
     if (!session.works()) return false;
   }
-  return session.give_up("does not change over to the next block; switch the units off and on");
+  return session.give_up("does not switch to the next block; switch the units off and on");
 }
 
-/// Ramps down, then makes the units forget what they play.
+/// Ramps down, then clears the units.
 void Autd3SdkArray::Impl::fall_silent() {
   if (!session.works() || source == nullptr) return;
   falls = true;
@@ -295,8 +295,8 @@ void Autd3SdkArray::Impl::fall_silent() {
   session.close();
 }
 
-/// Looks for lost units until they are back. The stream waits.
-void Autd3SdkArray::Impl::connect_again(const std::stop_token& stop) {
+/// Searches for lost units until they are back. The stream pauses.
+void Autd3SdkArray::Impl::reconnect(const std::stop_token& stop) {
   const auto say = [&] {
     const std::lock_guard lock(mutex);
     status = DeviceStatus::Vanished;
@@ -307,7 +307,7 @@ void Autd3SdkArray::Impl::connect_again(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     const Clock::time_point tried = Clock::now();
     if (session.resume()) return;
-    if (session.hears_units()) {
+    if (session.units_answer()) {
       if (session.open(stop)) return;
       say();
     }

@@ -1,4 +1,4 @@
-// How the link to AUTD3 units with the SDK's firmware is shared out.
+// Load of the link to AUTD3 units with the SDK's firmware.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,12 +10,12 @@
 namespace prostm {
 namespace {
 
-constexpr double kCarrier = 40e3;  // [Hz], from which all sampling rates are divided
+constexpr double kCarrier = 40e3;  // all sampling rates are fractions of it [Hz]
 constexpr double kMostLoad = 0.5;
 constexpr double kLongBlock = 20e-3, kShortBlock = 10e-3;  // [s]
-constexpr int kLeastDivider = 4;                           // 10 kHz, above which nothing is gained
-constexpr int kMostDivider = 20;  // 2 kHz, below which fingers feel the steps
-constexpr int kTurnFrames = 2;    // that change over to a block and read the state
+constexpr int kLeastDivider = 4;                           // 10 kHz: higher rates gain nothing
+constexpr int kMostDivider = 20;  // 2 kHz: at lower rates fingers feel the steps
+constexpr int kTurnFrames = 2;    // frames that switch to a block and read the state
 
 }  // namespace
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{500};
 
-/// The setup without a look at the address; [autd3] is of units with either firmware.
+/// Returns the setup without checking the address; [autd3] holds for units with either firmware.
 Autd3SdkSetup shared_setup_of(const DeviceSetup& setup) {
   return {.address = setup.address,
           .units = setup.settings.of<Autd3Settings>().poses(),
@@ -29,8 +29,8 @@ Autd3SdkSetup shared_setup_of(const DeviceSetup& setup) {
 Autd3SdkSetup setup_of(const DeviceSetup& setup) {
   if (setup.address.empty())
     throw std::invalid_argument(
-        "autd3-sdk needs the network interface of its units, as autd3-sdk://%eth0, or a "
-        "simulator's address, as autd3-sdk://[::1]:44336");
+        "autd3-sdk needs the network interface of its units, such as autd3-sdk://%eth0, or a "
+        "simulator's address, such as autd3-sdk://[::1]:44336");
   return shared_setup_of(setup);
 }
 
@@ -49,18 +49,18 @@ std::unique_ptr<Device> make(const DeviceSetup& setup) {
   return std::make_unique<Autd3SdkArray>(setup_of(setup));
 }
 
-/// Asks without changing anything, so that a program that drives the units is not disturbed.
+/// Queries without changing anything, so as not to disturb a program that drives the units.
 DeviceFinding look(const DeviceSetup& setup) {
   if (setup.address.empty())
     return {false,
-            "name the network interface of the units to look for them, as "
+            "name the network interface of the units to search for them, such as "
             "autd3-sdk://%eth0"};
   try {
     const UdpAddress group = sdk::group_address(setup.address);
     UdpSocket socket;
     if (const std::string why = socket.open(group); !why.empty())
-      return {false, fmt::format("autd3-sdk://{}: {}; IPv6 must be on there, which 'ip -6 address' "
-                                 "shows and 'sysctl net.ipv6.conf.all.disable_ipv6=0' sets",
+      return {false, fmt::format("autd3-sdk://{}: {}; IPv6 must be on there: 'ip -6 address' "
+                                 "shows it, 'sysctl net.ipv6.conf.all.disable_ipv6=0' sets it",
                                  setup.address, why)};
     sdk::Discovery discovery(socket, group);
     const std::vector<sdk::Unit> units = discovery.who_is_there(kLook);
@@ -71,18 +71,18 @@ DeviceFinding look(const DeviceSetup& setup) {
       return {true, words + "; units behind these answer once they are numbered"};
     }
     if (discovery.other_version() != 0)
-      return {false, fmt::format("a unit answers in wire version {}, and prostm speaks version {}; "
+      return {false, fmt::format("a unit answers in wire version {}, but prostm speaks version {}; "
                                  "update it with the AUTD3 SDK 0.10",
                                  discovery.other_version(), sdk::kVersion)};
-    return {false, "nobody answers: " + sdk::nobody_words(group)};
+    return {false, "no unit answers: " + sdk::nobody_words(group)};
   } catch (const std::invalid_argument& error) {
     return {false, error.what()};
   }
 }
 
-/// Names of the interfaces that have an IPv6 address on their link.
+/// Returns the names of the interfaces with a link-local IPv6 address.
 std::set<std::string> ipv6_interfaces() {
-  constexpr const char* kLink = "20";  // the scope
+  constexpr const char* kLink = "20";  // the link-local scope
   std::ifstream file("/proc/net/if_inet6");
   std::set<std::string> names;
   std::string address, index, prefix, scope, flags, name;
@@ -96,10 +96,10 @@ DeviceFinding check_ipv6() {
   const std::set<std::string> names = ipv6_interfaces();
   if (!names.empty()) {
     return {true,
-            fmt::format("addresses of the link on {}, as autd3-sdk needs", fmt::join(names, ", "))};
+            fmt::format("link-local addresses on {}, as autd3-sdk needs", fmt::join(names, ", "))};
   }
   return {false,
-          "no interface has an IPv6 address of its link, which autd3-sdk needs: switch IPv6 on "
+          "no interface has a link-local IPv6 address, which autd3-sdk needs: switch IPv6 on "
           "(sysctl net.ipv6.conf.all.disable_ipv6=0) and plug the cable in"};
 }
 

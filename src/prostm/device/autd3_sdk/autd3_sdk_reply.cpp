@@ -87,27 +87,26 @@ std::string error_words(std::uint8_t error) {
       return "does not know a command; its firmware is older than that of the AUTD3 SDK 0.10, so "
              "update it";
     case 0x02:
-      return "cannot use the values of a command; its firmware has another version than prostm "
-             "speaks to";
+      return "cannot use the values of a command; prostm does not support the version of its "
+             "firmware";
     case 0x04:
-      return "refused the silencer's setting, because samples change faster than the silencer may "
+      return "refused the silencer's setting, because samples change faster than the silencer can "
              "follow; use a lower sampling rate";
     case 0x05:
-      return "refused to change over to the next block in this way; its firmware has another "
-             "version "
-             "than prostm speaks to";
+      return "refused to switch to the next block in this way; prostm does not support the "
+             "version of its firmware";
     case 0x06:
-      return "was told too late of a change to the next block; look after the network's delay";
+      return "received the switch to the next block too late; check the network's delay";
     case 0x07:
       return "has a logic chip that does not answer; switch the unit off and on";
     case 0x08:
       return "has no common clock yet; wait, or switch the units off and on";
     case 0x09:
-      return "has a period of its clock that it cannot use; switch the units off and on";
+      return "has a clock with an unusable period; switch the units off and on";
     case 0x0A:
     case 0x0D:
     case 0x0E:
-      return "was asked for an update of its firmware that had not begun; switch it off and on";
+      return "got a command of a firmware update that had not begun; switch it off and on";
     case 0x0B:
       return "has a damaged image of its firmware; update it again with the AUTD3 SDK";
     case 0x0C:
@@ -128,9 +127,8 @@ std::string error_words(std::uint8_t error) {
     case 0x14:
       return "was too busy to join the common time; try again";
     case 0x15:
-      return "stays muted, because what muted it still holds: it hears nothing from the host, or "
-             "its "
-             "clock runs alone; look after the network";
+      return "stays muted, because the cause persists: it receives nothing from the host, or its "
+             "clock is not synchronised; check the network";
     default:
       return "answered with error " + std::to_string(error) +
              ", which prostm does not know; its firmware is newer";

@@ -45,16 +45,16 @@ enum FpgaFlag : std::uint8_t {
 enum Status : std::uint8_t { kOk = 0, kNotAssigned = 2 };
 enum Error : std::uint8_t { kNoError = 0, kInvalidPayload = 2, kFailsafeConditionActive = 0x15 };
 
-/// An answer of a unit; `body` lies in the bytes that were read.
+/// An answer of a unit; `body` refers to the bytes given.
 struct Reply {
   Kind kind = Kind::Frame;
   std::uint16_t id = 0;
   std::uint8_t status = kOk;  ///< kOk for frames and heartbeats, which have none
   std::span<const std::uint8_t> body;
 };
-/// Reads an answer; empty if it is too short or not of wire version 2.
+/// Parses an answer; empty if it is too short or not of wire version 2.
 std::optional<Reply> read_reply(std::span<const std::uint8_t> bytes);
-/// The version of a datagram; 0 if it is too short.
+/// The wire version of a datagram; 0 if it is too short.
 int version_of(std::span<const std::uint8_t> bytes);
 
 struct UnitInfo {
@@ -71,7 +71,7 @@ struct FrameReply {
 };
 std::optional<FrameReply> read_frame_reply(const Reply& reply);
 
-/// Says in a clause why a unit did not do what it was asked for, and what helps.
+/// Returns a clause with the reason why a unit refused a request, and the remedy.
 std::string status_words(std::uint8_t status);
 std::string error_words(std::uint8_t error);
 

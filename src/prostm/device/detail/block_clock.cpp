@@ -26,7 +26,7 @@ BlockClock::Time BlockClock::play_time(std::int64_t block) const {
 
 BlockClock::Filled BlockClock::fill(std::int64_t block, Time now) {
   Filled filled;
-  // blocks that a longer queue asks for at once count as asked for when it grew
+  // blocks that are requested early because the queue grew count as requested at that moment
   const Duration delay = now - std::max(ask_time(block), grown_at_);
   filled.late = delay > period_;
   delays_.front() = std::max(delays_.front(), delay);
@@ -34,7 +34,7 @@ BlockClock::Filled BlockClock::fill(std::int64_t block, Time now) {
   if (now <= play) {
     lengthen(block, delay, now);
   } else {
-    // the queue has run dry: play at the next period's start
+    // the queue has run empty: play at the start of the next period
     filled.missed = (now - play) / period_ + 1;
     const Duration missed = filled.missed * period_,
                    longer = std::min(missed, most_ - shifts_.back().queue);
@@ -44,19 +44,19 @@ BlockClock::Filled BlockClock::fill(std::int64_t block, Time now) {
   return filled;
 }
 
-/// From `block` on, asks for blocks later and lets them wait longer.
+/// From `block` on, requests blocks later and keeps them in the queue for longer.
 void BlockClock::shift(std::int64_t block, Duration later, Duration longer) {
   const Shift last = shifts_.back();
   if (shifts_.size() == kShifts) shifts_.erase(shifts_.begin());
   shifts_.push_back({block, last.start + later, last.queue + longer});
 }
 
-/// Returns the queue needed for a delay: the periods that it reaches into, and one more.
+/// Returns the queue needed for a delay: the periods that the delay reaches into, plus one.
 BlockClock::Duration BlockClock::needed(Duration delay) const {
   return std::clamp((delay / period_ + 2) * period_, least_, most_);
 }
 
-/// Lengthens a queue that was nearly dry.
+/// Lengthens a queue that was nearly empty.
 void BlockClock::lengthen(std::int64_t block, Duration delay, Time now) {
   const Duration lacks = needed(delay) - shifts_.back().queue;
   if (lacks <= Duration::zero()) return;
@@ -64,7 +64,7 @@ void BlockClock::lengthen(std::int64_t block, Duration delay, Time now) {
   grown_at_ = now;
 }
 
-/// Shortens the queue by one period if less was enough for all remembered blocks.
+/// Shortens the queue by one period if a shorter one was enough for all remembered blocks.
 void BlockClock::shorten(std::int64_t block) {
   const Duration longest = *std::max_element(delays_.begin(), delays_.end());
   if (shifts_.back().queue > needed(longest)) shift(block + 1, period_, -period_);

@@ -13,13 +13,14 @@ class LinkLoss {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// The link is lost and nothing plays from `since` on. Counts once until found().
+  /// Records that the link is lost and that nothing plays from `since` on. Counts once until
+  /// found().
   void lose(Time since, DeviceStats& stats) {
     if (since_) return;
     since_ = since;
     ++stats.lost_links;
   }
-  /// Blocks play again. @param block_time [s].
+  /// Records that blocks play again. @param block_time [s].
   void found(Time now, double block_time, DeviceStats& stats) {
     add(now, block_time, stats);
     since_.reset();

@@ -42,7 +42,7 @@ void SegmentPlayer::reset(int foci) {
 }
 
 void SegmentPlayer::load(std::span<const FocusSample> samples) {
-  // the copy and the release of old memory happen outside of the lock
+  // copy, and release old memory, outside the lock
   std::vector<FocusSample> copy(samples.begin(), samples.end());
   {
     const std::lock_guard lock(mutex_);
@@ -57,8 +57,8 @@ SegmentPlayer::Playing SegmentPlayer::playing() const {
   return now_;
 }
 
-/// Takes the segment that was loaded last, if it has not been taken, to play from sample `first`
-/// on. Never waits: while another is being loaded, the playing one repeats.
+/// Switches to the newest loaded segment, unless it plays already, from sample `first` on. Never
+/// blocks: while another segment is being loaded, the current segment repeats.
 void SegmentPlayer::take_next(std::int64_t first) noexcept {
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock || !has_next_) return;

@@ -1,5 +1,5 @@
 #pragma once
-/// A segment as an endless stream.
+/// Plays a segment as an endless stream.
 
 #include <mutex>
 #include <string>
@@ -12,20 +12,20 @@ namespace prostm {
 /// Says in one sentence what is wrong with a segment; empty if nothing is.
 std::string segment_problem(std::span<const FocusSample> samples, int foci, int max_foci);
 
-/// Repeats a segment. A new one takes over at the end of the one that plays, so that laps stay
-/// whole.
+/// Repeats a segment. A new segment starts when the current one reaches its end, so that every
+/// repetition is complete.
 class SegmentPlayer final : public SampleSource {
  public:
-  /// Forgets what was loaded; the next segment has `foci` focal points a sample. @pre nothing
-  /// pulls.
+  /// Discards all segments; the next one has `foci` focal points per sample. @pre no thread is
+  /// pulling.
   void reset(int foci);
-  /// Loads samples, sample-major, to play from the next end on. Any thread. @pre not empty, whole
-  /// samples.
+  /// Loads samples, sample-major, which play once the current segment ends. Any thread. @pre not
+  /// empty, whole samples.
   void load(std::span<const FocusSample> samples);
 
-  /// The segment that plays.
+  /// The segment that is playing.
   struct Playing {
-    std::int64_t number = 0;  ///< loads since the reset up to it; 0: none plays yet
+    std::int64_t number = 0;  ///< its number, counting loads since reset() from 1; 0: none yet
     std::int64_t first = 0;   ///< sample at which it began
   };
   Playing playing() const;
@@ -37,8 +37,8 @@ class SegmentPlayer final : public SampleSource {
   void take_next(std::int64_t first) noexcept;
 
   int foci_ = 1;
-  std::vector<FocusSample> playing_;  // of the thread that pulls
-  std::size_t at_ = 0;                // in playing_
+  std::vector<FocusSample> playing_;  // used by the pulling thread
+  std::size_t at_ = 0;                // position in playing_
   mutable std::mutex mutex_;          // guards the members below
   std::vector<FocusSample> next_;
   bool has_next_ = false;

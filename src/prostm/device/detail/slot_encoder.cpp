@@ -15,9 +15,9 @@ constexpr double kPitch = 10.16e-3;  // [m]
 constexpr int kColumns = 18, kRows = 14;
 constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
 constexpr int kPhases = 256;    // steps of a turn
-constexpr int kIterations = 3;  // a sample lasts several of 40 kHz, and the focal points move on
+constexpr int kIterations = 3;  // more than at 40 kHz: focal points move further per sample
 
-/// Pressure of intensity 1: that of the whole array 200 mm over the origin of D.
+/// Returns the pressure of intensity 1: that of the whole array 200 mm above the origin of D.
 double full_scale_of(const TransducerArray& array, const Medium& medium) {
   const Wave sound = wave(array, medium);
   double sum = 0.0;
@@ -33,7 +33,7 @@ LiveFocusSettings solver_settings(std::span<const Pose> units, const Medium& med
   settings.full_scale = full_scale_of(autd3_units(units), medium);
   settings.adds_phasors = true;
   settings.phase_levels = kPhases;
-  // single slots cannot play what the solver finds
+  // a single slot per focal point cannot play the solver's magnitudes
   if (slots.own_intensities)
     settings.memory = std::exp(-1.0 / (time_constant({}) * slots.sample_rate));
   return settings;
@@ -50,7 +50,7 @@ SlotWord word_of(const Eigen::Vector3f& p_U, int byte) {
   return word;
 }
 
-/// Whether every unit can be told of a place, tested so that NaN is not compared.
+/// Whether every unit can encode this position, tested without comparing a NaN.
 bool is_in_reach(const FocusSample& focus) {
   constexpr float kFarthest = 2.5F;  // [m] from the origin of D, where units may stand too
   for (const float x : focus.p_D)
@@ -126,9 +126,9 @@ void SlotEncoder::encode(std::span<const FocusSample> sample, std::span<SlotWord
 void SlotEncoder::place(std::size_t focus) {
   const std::complex<float> c = solver_.coefficient(focus);
   float size = std::min(std::abs(c), 1.0F);
-  // AUTD3 takes the negative of the sum's phase, so its phases are those of c*. All others are told
-  // relative to the first slot's, which must not jump: a silent focal point keeps its phase, and
-  // one that turns around passes through silence, δ through a quarter turn.
+  // AUTD3 uses the negative phase of the sum, so its phases are those of c*. All other phases are
+  // relative to that of the first slot, which must not jump: a silent focal point keeps its phase,
+  // and one that changes sign passes through silence, with δ through a quarter turn.
   if (size > 0.0F) {
     float turned = -std::arg(c) / kTurn * kPhases - middle_[focus];
     turned -= kPhases * std::round(turned / kPhases);
@@ -151,7 +151,8 @@ void SlotEncoder::place(std::size_t focus) {
   slot_[first + 1] = {p_D, phase + apart};
 }
 
-/// A single slot cannot cancel itself: a silent focal point's adds to one that sounds.
+/// Moves the slot of each silent focal point to one that sounds: a single slot cannot cancel
+/// itself.
 void SlotEncoder::join_silent() {
   const auto sounds = [&](const Slot& slot) {
     return solver_.coefficient(static_cast<std::size_t>(&slot - slot_.data())) != 0.0F;

@@ -1,6 +1,6 @@
 #pragma once
-/// From samples of focal points to the slots of AUTD3's FociSTM, which its firmware makes drives
-/// of.
+/// Encodes samples of focal points as the slots of AUTD3's FociSTM, from which the firmware
+/// computes the drives.
 
 #include <cstdint>
 #include <span>
@@ -20,20 +20,20 @@ inline constexpr int kLargestSlotPlace = (1 << 17) - 1;
 
 struct SlotSettings {
   int foci = 4;  ///< focal points of a sample, 1..8
-  /// An intensity for each focal point, by two slots each; at most kMostSlots / 2 focal points
-  /// then. One focal point needs one slot.
+  /// Each focal point has its own intensity and takes two slots, so there are at most kMostSlots /
+  /// 2 of them. A single focal point needs one slot.
   bool own_intensities = true;
-  double sample_rate = 10e3;  ///< of the samples, which the transducers' memory depends on [Hz]
+  double sample_rate = 10e3;  ///< of the samples [Hz]; sets how much a transducer still rings
 };
 
 /// Slots of a sample. @throws std::invalid_argument for more focal points than fit.
 int slot_count(const SlotSettings& settings);
 
-/// Encodes sample after sample for an array of one or several units. All units get the same phases
-/// and the same intensity, and positions in their own frames, (A23). The shares of focal
-/// points are those at the end of each sample, after the transducers' memory. Allocates nothing
-/// after construction. A focal point whose numbers are not finite, that is out of reach or behind
-/// the array is silent.
+/// Encodes one sample after another for an array of one or several units. All units get the same
+/// phases and the same intensity, and positions in their own frames, (A23). The focal points have
+/// their shares of the pressure at the end of each sample, with the ringing of the transducers
+/// taken into account. Allocates nothing after construction. A focal point with a number that is
+/// not finite, or out of reach, or behind the array, is silent.
 class SlotEncoder {
  public:
   /// @param units poses X_DU of the units' own frames (transducer 0 is the origin).
@@ -47,7 +47,7 @@ class SlotEncoder {
   /// @param words slots() of unit 0, then those of unit 1, and so on. The byte of slot 0 is the
   /// intensity, that of slot i > 0 the phase of slot i less that of slot 0 [1/256 turn].
   void encode(std::span<const FocusSample> sample, std::span<SlotWord> words) noexcept;
-  /// Begins anew, after silence.
+  /// Starts afresh, after silence.
   void reset();
 
  private:
@@ -65,13 +65,13 @@ class SlotEncoder {
   LiveFocusSolver solver_;
   std::vector<LiveFocus> foci_;
   std::vector<Slot> slot_;
-  std::vector<float> middle_;  // phase between a focal point's slots [1/256 turn]
+  std::vector<float> middle_;  // phase half-way between a focal point's slots [1/256 turn]
   int reference_ = 0;          // phase of the first slot, which the units take as 0 [1/256 turn]
 };
 
-/// The array of AUTD3's units at these places, X_DU, as transducers in D.
+/// Returns the transducers in D of AUTD3 units with the poses X_DU.
 TransducerArray autd3_units(std::span<const Pose> units);
-/// Pose X_DU of a single unit whose middle is the origin of D.
+/// Returns the pose X_DU of a single unit whose middle is the origin of D.
 Pose autd3_middle();
 
 }  // namespace prostm

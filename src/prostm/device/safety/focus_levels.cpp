@@ -13,16 +13,16 @@ constexpr double kNearest = 10e-3;  // a transducer's far field begins there [m]
 constexpr double kAbove = 20e-3, kHeight = 0.5, kBeside = 0.12;  // of the grid, from the array [m]
 constexpr double kSpacing = 20e-3;                               // [m]
 constexpr double kMostWork = 4e7;   // nodes × transducers; larger arrays get a coarser grid
-constexpr float kLeast = 1.0F;      // so that nothing is divided by 0 [Pa]
-constexpr double kRoundUp = 1.01;   // of the directivity's table, and of floats
-constexpr double kCurvature = 1.5;  // over the least rise that the second differences ask for
+constexpr float kLeast = 1.0F;      // avoids a division by 0 [Pa]
+constexpr double kRoundUp = 1.01;   // covers the errors of the directivity's table and of floats
+constexpr double kCurvature = 1.5;  // safety factor on the rise found from second differences
 
-/// Directivity over cos θ from 0 to 1. Behind a transducer it stays as it is at its edge, so that
-/// no step falls between two nodes of the grid.
+/// Directivity over cos θ from 0 to 1. Behind a transducer it keeps its value at 90°, so that there
+/// is no step between two nodes of the grid.
 class DirectivityTable {
  public:
   explicit DirectivityTable(const TransducerArray& array) {
-    // the wave number in air at 20 °C; its few percent hardly change the directivity
+    // wave number in air at 20 °C; its variation of a few percent hardly changes the directivity
     const double ka = wave_number(array, Medium{}) * array.radius;
     for (std::size_t i = 0; i < kSize; ++i) {
       value_[i] = static_cast<float>(
@@ -104,8 +104,9 @@ FocusLevels::FocusLevels(const TransducerArray& array) {
   raise();
 }
 
-/// A function that bends down by κ over a step lies up to κ/8 above the straight line between two
-/// nodes, along each axis. The second differences of nodes and their neighbours say by how much.
+/// Raises the nodes so that interpolation never falls below the exact values. A function with a
+/// second difference of −κ over a step lies up to κ/8 above the straight line between two nodes,
+/// along each axis; κ comes from the second differences at the nodes and their neighbours.
 void FocusLevels::raise() {
   const std::vector<float> truth = node_;
   const auto value = [&](int x, int y, int z) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The loudest that an array can be at a point: a table to look up in real time.
+/// The highest level that an array can reach at a point: a look-up table for real time.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -9,27 +9,27 @@
 
 namespace prostm {
 
-/// Largest amplitude that the sources allow an array [Pa·m].
+/// Largest amplitude of an array's transducers according to the sources [Pa·m].
 double largest_amplitude(const TransducerArray& array);
-/// The smallest one.
+/// Smallest amplitude according to the sources [Pa·m].
 double smallest_amplitude(const TransducerArray& array);
 
-/// Acoustic pressure (rms) at p when every transducer is at full drive and all arrive in phase,
-/// Σ A·D(θ)/r [Pa], with A the largest amplitude and without absorption: no drives make it louder.
-/// Distances under 10 mm count as 10 mm.
+/// Acoustic pressure (rms) at p if every transducer is driven fully and all contributions arrive in
+/// phase, Σ A·D(θ)/r [Pa], with A the largest amplitude and no absorption: an upper bound for any
+/// drives. Distances under 10 mm count as 10 mm.
 double full_pressure(const TransducerArray& array, const Vec3& p);
 
 /// full_pressure() on a grid around the array, from 20 mm above it to 520 mm and 120 mm to its
-/// sides. Between the nodes it is interpolated and rounded up, by as much as its curvature asks: it
-/// is never below the truth, and in the middle of the grid at most some percent above it.
+/// sides. Values between the nodes are interpolated, and raised according to the curvature: they
+/// are never below the exact value, and in the middle of the grid at most some percent above it.
 class FocusLevels {
  public:
   /// Takes some milliseconds. @throws std::invalid_argument as validate(array) does.
   explicit FocusLevels(const TransducerArray& array);
 
-  /// Whether the table holds this place. @pre p is finite.
+  /// Whether this position is within the table. @pre p is finite.
   bool holds(const Eigen::Vector3f& p) const noexcept;
-  /// Acoustic pressure (rms) there at full drive, or more [Pa]. @pre holds(p)
+  /// Upper bound of the acoustic pressure (rms) there at full drive [Pa]. @pre holds(p)
   float pressure(const Eigen::Vector3f& p) const noexcept;
   const Eigen::AlignedBox3d& box() const { return box_; }
 

@@ -11,14 +11,14 @@ namespace {
 
 constexpr double kReference = 20e-6;      // rms acoustic pressure of 0 dB [Pa]
 constexpr double kHandHeight = 0.2;       // above the array [m]
-constexpr double kHandAngle = kPi / 4.0;  // off the axes, of the sound that meets a hand
+constexpr double kHandAngle = kPi / 4.0;  // from the axes, within which sound hits a hand
 constexpr double kHandToHead = 0.1;       // at least [m]
 
 double decibels(double squared_pressure) {
   return 10.0 * std::log10(squared_pressure / (kReference * kReference));
 }
 
-/// ∫ D² dΩ over the directions of a transducer in which a hand is [sr].
+/// ∫ D² dΩ over the directions of a transducer that hit a hand [sr].
 double solid_angle(const TransducerArray& array) {
   constexpr int kSteps = 2000;
   const double ka = wave_number(array, Medium{}) * array.radius;

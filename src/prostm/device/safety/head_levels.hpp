@@ -8,7 +8,7 @@
 
 namespace prostm {
 
-/// Distances of the head from the array at which levels are told [m].
+/// Distances of the head from the array at which levels are reported [m].
 inline constexpr std::array<double, 3> kHeadDistances = {0.3, 0.5, 1.0};
 
 /// Sound levels at full drive, on the axis of the array [dB re 20 µPa rms]. docs/design/safety.md,
@@ -16,13 +16,14 @@ inline constexpr std::array<double, 3> kHeadDistances = {0.3, 0.5, 1.0};
 
 struct HeadLevel {
   double distance = 0.0;  ///< of the head from the middle of the array [m]
-  /// Smallest amplitude of the sources, transducers that add up incoherently, nothing reflected.
+  /// Smallest amplitude of the sources, incoherent sum of the transducers, no reflections.
   double low = 0.0;
-  /// Largest amplitude, incoherent, with the power that meets a hand at 200 mm, within 45° of the
-  /// transducers' axes, scattered evenly over a half-space: this level is capped.
+  /// Largest amplitude, incoherent sum, plus the scattering of a hand at 200 mm: the power emitted
+  /// within 45° of the transducers' axes, spread evenly over a half-space. The cap applies to this
+  /// level.
   double estimate = 0.0;
-  /// Largest amplitude, all transducers in phase, with a reflection as strong: no drives make it
-  /// louder.
+  /// Largest amplitude, all transducers in phase, with a reflection of the same strength: an upper
+  /// bound for any drives.
   double bound = 0.0;
 };
 
@@ -33,7 +34,7 @@ HeadLevel head_level(const TransducerArray& array, double distance);
 struct ExposureLimit {
   const char* name;
   double level;        ///< [dB re 20 µPa]
-  const char* source;  ///< where the number comes from, and whether that was checked
+  const char* source;  ///< source of the number, and whether it was checked
 };
 /// In increasing order.
 std::span<const ExposureLimit> exposure_limits();

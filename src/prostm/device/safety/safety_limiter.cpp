@@ -8,33 +8,33 @@
 namespace prostm {
 namespace {
 
-constexpr float kRounding = 1e-4F;       // rounding of floats, which is no excess
+constexpr float kRounding = 1e-4F;       // tolerance for the rounding of floats
 constexpr float kSilence = 0.01F;        // intensity
-constexpr float kFarthest = 100.0F;      // [m], beyond which there are no focal points
-constexpr double kPlaceRounding = 1e-3;  // of a step, for places in floats
+constexpr float kFarthest = 100.0F;      // largest coordinate of a focal point [m]
+constexpr double kPlaceRounding = 1e-3;  // of a step, for positions in floats
 constexpr double kRampTime = 0.050, kSilenceTime = 0.100, kMuteTime = 0.010;  // [s]
 
 // The mean over time has this time constant, so that over a second it is at most
 // (1 + kMeanTime) times the largest exponential mean, (G3)
 constexpr double kMeanTime = 0.1;  // [s]
 constexpr float kMeanShare = static_cast<float>(0.999 / (1.0 + kMeanTime));
-constexpr float kMeanGain = 4.0F;  // how fast what is allowed falls as a mean nears its cap
+constexpr float kMeanGain = 4.0F;  // how fast the allowed level falls as a mean nears its cap
 
-// Where the drive may be more than this, intensities pass whatever they add up to
+// Where the allowed drive exceeds kKnee, intensities pass whatever their sum
 constexpr float kKnee = 1.25F, kMostDrive = 8.0F;
 
-// acoustic pressure of intensity 1, for devices that take it as a pressure, is that of a full drive
-// here, as for SimulatedArray
+// for devices that take intensity as a pressure, intensity 1 is the pressure of a full drive at
+// this height, as for SimulatedArray
 constexpr double kFullScaleHeight = 0.2;  // [m]
 
-/// Whether all numbers are finite and the place is near enough. Tested so that NaN is not compared.
+/// Whether all numbers are finite and the position is near enough. Never compares a NaN.
 bool is_finite(const FocusSample& s) {
   for (const float x : s.p_D)
     if (!std::isfinite(x) || std::abs(x) > kFarthest) return false;
   return std::isfinite(s.intensity);
 }
 
-/// Largest Σ of drives where a full drive of `allowed` keeps all caps, (G4).
+/// Largest Σ of drives where a drive of `allowed` is within all caps, (G4).
 float largest_sum(float allowed) {
   if (allowed <= 1.0F) return allowed;
   return 1.0F + (allowed - 1.0F) / (kKnee - 1.0F) * (kMostDrive - 1.0F);
@@ -59,7 +59,7 @@ float SafetyLimiter::Mean::allowed(float cap) const {
 }
 
 void SafetyLimiter::Mean::add(float now, float now_low, float weight) {
-  // what is left of earlier sound counts as none, or it would fade into slow subnormal numbers
+  // tiny remainders are set to 0, since subnormal numbers are slow
   constexpr float kNothing = 1e-20F;
   mean += weight * (now - mean);
   low += weight * (now_low - low);
@@ -96,7 +96,7 @@ void SafetyLimiter::fill(std::int64_t first, std::span<FocusSample> out) noexcep
 
 /// Limits one sample of all focal points.
 void SafetyLimiter::limit(std::span<FocusSample> now) noexcept {
-  // each focal point by itself
+  // limits on each focal point by itself
   const bool muted = mute_ && mute_->on();
   for (std::size_t f = 0; f < now.size(); ++f) clean(f, now[f]);
   advance_ramps(now, muted);
@@ -111,7 +111,7 @@ void SafetyLimiter::limit(std::span<FocusSample> now) noexcept {
     intensity = std::clamp(intensity, last - change_, last + change_);
   }
 
-  // all of them together
+  // limits on all of them together
   if (holding_) {
     hold_all(now, held_for_);
   } else if (!hold_jumps(now)) {
@@ -120,15 +120,15 @@ void SafetyLimiter::limit(std::span<FocusSample> now) noexcept {
   account(now);
 }
 
-/// Whether a focal point sounds before and after a step that is too long, however faintly: a device
-/// that adds phasors gives a faint one more than its share of slots.
+/// Whether a focal point has an intensity above 0, however small, before and after a step that is
+/// too long: a device that adds phasors gives a weak one more than its share of the slots.
 bool SafetyLimiter::jumps(std::size_t f, const FocusSample& now) const noexcept {
   const FocusSample& last = focus_[f].last;
   return now.intensity > 0.0F && last.intensity > 0.0F &&
          (now.p_D - last.p_D).squaredNorm() > step_ * step_;
 }
 
-/// Makes a sample finite, in a place where levels are known, and not above the cap.
+/// Makes a sample finite, at a position with known levels, and not above the cap on intensity.
 void SafetyLimiter::clean(std::size_t f, FocusSample& now) noexcept {
   Focus& focus = focus_[f];
   focus.wanted_pressure = focus.full_pressure;
@@ -160,7 +160,7 @@ void SafetyLimiter::clean(std::size_t f, FocusSample& now) noexcept {
   }
 }
 
-/// Full output takes a while after the start, after silence, and after a mute.
+/// Advances the ramps that limit output after the start, after silence, and around a mute.
 void SafetyLimiter::advance_ramps(std::span<const FocusSample> wanted, bool muted) noexcept {
   unmuted_ = std::clamp(unmuted_ + (muted ? -mute_fall_ : mute_fall_), 0.0F, 1.0F);
   const bool sounds = std::any_of(wanted.begin(), wanted.end(),
@@ -173,7 +173,7 @@ void SafetyLimiter::advance_ramps(std::span<const FocusSample> wanted, bool mute
   }
 }
 
-/// Returns the level of samples whose places' pressures are in `wanted_pressure`.
+/// Returns the level of a sample, with the pressures at its positions from `wanted_pressure`.
 SafetyLimiter::Level SafetyLimiter::level(std::span<const FocusSample> samples) const noexcept {
   Level level;
   const float full_scale = limits_.levels->full_scale;
@@ -185,8 +185,8 @@ SafetyLimiter::Level SafetyLimiter::level(std::span<const FocusSample> samples) 
     squares += intensity * intensity;
     own = std::max(own, intensity * full);
     level.pressure = std::max(level.pressure, full);
-    // a device that takes intensity as a pressure drives harder for a place that is farther; full
-    // is above 0 where levels are known, and clean() has moved a sample from any other place
+    // a device that takes intensity as a pressure drives harder for a position further away; full
+    // is above 0 where levels are known, and clean() has replaced any other position
     if (full * stretch < full_scale) stretch = full_scale / full;
   }
   level.drive = sum * stretch;
@@ -196,14 +196,14 @@ SafetyLimiter::Level SafetyLimiter::level(std::span<const FocusSample> samples) 
   return level;
 }
 
-/// Returns the largest drive that keeps all caps where a full drive makes this pressure [Pa]; above
-/// 1 all do.
+/// Returns the largest drive within all caps, if a full drive makes this pressure [Pa]; above 1:
+/// any drive.
 SafetyLimiter::Allowed SafetyLimiter::cap_drive(float pressure) const noexcept {
   const SafetySettings& caps = limits_.caps;
   const float radiation =
       static_cast<float>(limits_.levels->radiation_per_square) * pressure * pressure;
   const float acoustic = static_cast<float>(caps.acoustic_pressure) / pressure;
-  // of the square of the drive
+  // bounds on the square of the drive
   const std::array<Allowed, 4> squares = {{
       {acoustic * acoustic, SafetyLimit::AcousticPressure},
       {static_cast<float>(caps.radiation_pressure) / radiation, SafetyLimit::RadiationPressure},
@@ -215,7 +215,7 @@ SafetyLimiter::Allowed SafetyLimiter::cap_drive(float pressure) const noexcept {
   return {std::sqrt(least.most), least.limit};
 }
 
-/// Returns the factor of all intensities that keeps power and caps; at most 1.
+/// Returns the factor on all intensities that keeps power and caps; at most 1.
 SafetyLimiter::Allowed SafetyLimiter::scale(std::span<const FocusSample> now) const noexcept {
   float power = 0.0F;
   for (const FocusSample& sample : now) power += sample.intensity * sample.intensity;
@@ -231,8 +231,8 @@ SafetyLimiter::Allowed SafetyLimiter::scale(std::span<const FocusSample> now) co
   return by_cap.most < by_power.most ? by_cap : by_power;
 }
 
-/// Fades each focal point that jumps where it was. @return whether all are held, since the device
-/// has one intensity for them.
+/// Fades out each focal point that jumps, at its last position. @return whether all are held,
+/// because the device has one intensity for all.
 bool SafetyLimiter::hold_jumps(std::span<FocusSample> now) noexcept {
   for (std::size_t f = 0; f < now.size(); ++f) {
     if (!jumps(f, now[f])) continue;
@@ -246,7 +246,7 @@ bool SafetyLimiter::hold_jumps(std::span<FocusSample> now) noexcept {
   return false;
 }
 
-/// Lowers all intensities as far as the caps need.
+/// Lowers all intensities as far as the caps require.
 void SafetyLimiter::keep_caps(std::span<FocusSample> now) noexcept {
   const auto [share, reason] = scale(now);
   if (share >= 1.0F) return;
@@ -257,14 +257,14 @@ void SafetyLimiter::keep_caps(std::span<FocusSample> now) noexcept {
   count(reason, static_cast<std::int64_t>(now.size()));
 }
 
-/// Fades a focal point where it was.
+/// Fades out a focal point at its last position.
 void SafetyLimiter::hold(std::size_t f, FocusSample& now) noexcept {
   Focus& focus = focus_[f];
   now = {focus.last.p_D, std::max(0.0F, focus.last.intensity - change_)};
   focus.wanted_pressure = focus.full_pressure;
 }
 
-/// Fades all where they were: what was within all caps stays so while it falls.
+/// Fades out all focal points at their last positions, which were within all caps.
 void SafetyLimiter::hold_all(std::span<FocusSample> now, SafetyLimit reason) noexcept {
   for (std::size_t f = 0; f < now.size(); ++f) hold(f, now[f]);
   holding_ = std::ranges::any_of(now, [](const FocusSample& s) { return s.intensity > 0.0F; });
@@ -272,7 +272,7 @@ void SafetyLimiter::hold_all(std::span<FocusSample> now, SafetyLimit reason) noe
   count(reason, static_cast<std::int64_t>(now.size()));
 }
 
-/// Remembers what leaves.
+/// Records the sample that is sent, and its levels.
 void SafetyLimiter::account(std::span<const FocusSample> now) noexcept {
   for (std::size_t f = 0; f < now.size(); ++f) {
     focus_[f].last = now[f];

@@ -1,5 +1,5 @@
 #pragma once
-/// The last stage before every device: nothing leaves that is outside its limits.
+/// The last stage before every device: keeps all output within its limits.
 
 #include <array>
 #include <atomic>
@@ -26,18 +26,18 @@ struct SafetyLevels {
   HeadLevel head;               ///< at full drive
   double radiation_per_square;  ///< radiation pressure over acoustic pressure² [1/Pa]
   double share_low;             ///< smallest amplitude over the largest
-  float full_scale;             ///< acoustic pressure of intensity 1 where devices take it so [Pa]
+  float full_scale;  ///< acoustic pressure of intensity 1, for devices that define it so [Pa]
 };
 
-/// Limits of a chain of samples.
+/// Limits on the samples of a chain.
 struct SampleLimits {
-  double power = 4.0;     ///< largest Σ intensity² of a sample, besides the cap's
+  double power = 4.0;     ///< largest Σ intensity² of a sample, in addition to the cap
   double change = 0.025;  ///< largest change of an intensity from sample to sample
   SafetySettings caps = {};
-  /// Null: the array is not known, and the caps on levels at focal points and head do nothing.
+  /// Null: the array is unknown, and the caps on levels at focal points and at the head are off.
   std::shared_ptr<const SafetyLevels> levels = nullptr;
   double sample_rate = 40e3;   ///< [Hz]
-  bool one_intensity = false;  ///< the device has one for all focal points of a sample
+  bool one_intensity = false;  ///< the device has one intensity for all focal points of a sample
 };
 
 /// Reason for changing a sample.
@@ -46,19 +46,20 @@ enum class SafetyLimit : std::uint8_t {
   OutOfRange,  ///< an intensity outside 0 to 1
   Change,
   Power,
-  Place,  ///< a place for which levels are not known: too near to the array, behind or beside it
+  Place,  ///< a position without known levels: too near to the array, behind or beside it
   Intensity,
   AcousticPressure,
   RadiationPressure,
   MeanRadiationPressure,
   HeadLevel,
-  Jump,  ///< a jump waited for silence
+  Jump,  ///< held because of a jump, until silent
   Ramp   ///< after the start, and after silence
 };
 inline constexpr std::size_t kSafetyLimits = 12;
 
-/// Work of a limiter. Counts are samples of a focal point; levels are the largest that were
-/// reached, from the least to the most that the sources and the focal points' sum allow.
+/// Statistics of a limiter. Counts are samples of a focal point. Levels are the largest that were
+/// reached, as intervals: from the smallest to the largest amplitude of the sources, and from focal
+/// points that do not add up to those that do.
 struct SafetyStats {
   std::int64_t not_finite = 0, out_of_range = 0, change = 0, power = 0, place = 0, intensity = 0,
                acoustic_pressure = 0, radiation_pressure = 0, mean_radiation_pressure = 0,
@@ -66,40 +67,41 @@ struct SafetyStats {
   double acoustic_low = 0.0, acoustic_high = 0.0;    ///< rms, at a focal point [Pa]
   double radiation_low = 0.0, radiation_high = 0.0;  ///< [Pa]
   double mean_low = 0.0, mean_high = 0.0;            ///< mean radiation pressure [Pa]
-  /// Mean sound level at the head [dB]; 0: silence. The estimate is what the cap is on.
+  /// Mean sound level at the head [dB]; 0: silence. The cap applies to the estimate.
   double head_low = 0.0, head_estimate = 0.0, head_bound = 0.0;
 };
 template <>
 std::span<const Quantity<SafetyStats>> quantities<SafetyStats>();
 
-/// Samples that a limiter changed because a stage before it erred.
+/// Samples that a limiter changed because of an error of an earlier stage.
 std::int64_t erred_samples(const SafetyStats& stats);
 /// Samples that it lowered to keep a cap.
 std::int64_t capped_samples(const SafetyStats& stats);
-/// Name of the cap for which it lowered most of them.
+/// Name of the cap that lowered most of them.
 const char* main_cap(const SafetyStats& stats);
 
-/// Limits the samples that leave for a device, whatever the stages before it do.
+/// Limits the samples that are sent to a device, whatever the earlier stages do.
 ///
-/// Guarantees, for any samples whatsoever: finite numbers; places where levels are known; focal
-/// points that move by at most kMaxFocusSpeed (8 m/s) from sample to sample while they sound;
-/// intensities from 0 to the cap, that change by at most `change` a sample; Σ intensity² within
+/// Guarantees, for any input: finite numbers; positions with known levels; focal points that move
+/// by at most kMaxFocusSpeed (8 m/s) from sample to sample while their intensity is above 0;
+/// intensities from 0 to the cap that change by at most `change` per sample; Σ intensity² within
 /// both limits; acoustic and radiation pressure of every sample within their caps; the means of
-/// radiation pressure and of the head's level within theirs over any second, and over longer times.
-/// Levels are upper bounds: every transducer is taken to be driven with Σ intensity, at most fully,
-/// with the largest amplitude of the sources, and to arrive in phase. Full output takes 50 ms after
-/// the start, and after 100 ms of silence; intensities up to 1 % are silence here. While muted, it
-/// is silent within 10 ms.
+/// radiation pressure and of the level at the head within theirs, over any second and over longer
+/// times. Levels are upper bounds: every transducer is assumed to have the largest amplitude of the
+/// sources, to be driven with Σ intensity, at most fully, and to arrive in phase. Output takes 50
+/// ms to reach its full level after the start, and after 100 ms of silence; intensities up to 1 %
+/// count as silence here. A mute silences it within 10 ms.
 ///
-/// Samples that keep all this pass unchanged, to the bit, unless a level is within 25 % (in
-/// pressure) of its cap: there intensities are lowered which add nothing any more to a full drive,
-/// so that a cap bites without a step. A focal point that jumps stays where it was until it is
-/// silent; all do, if the device has one intensity for all, or if no fall by `change` keeps a cap.
+/// Samples within all limits pass unchanged, to the bit, unless a level is within 25 % (in
+/// pressure) of its cap: there the limiter lowers intensities whose sum exceeds a full drive, and
+/// whose excess has no effect, so that a cap sets in without a step. A focal point that jumps is
+/// held at its last position until it is silent; all focal points are held if the device has one
+/// intensity for all, or if a cap requires a faster fall than `change`.
 class SafetyLimiter final : public SampleStage {
  public:
   explicit SafetyLimiter(const SampleLimits& limits);
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
-  /// @pre nothing pulls.
+  /// @pre no thread is pulling.
   void obey(std::shared_ptr<const Mute> mute) noexcept { mute_ = std::move(mute); }
 
   /// As of the last block. Any thread.
@@ -110,10 +112,10 @@ class SafetyLimiter final : public SampleStage {
   struct Level {
     float pressure = 0.0F;  ///< at the loudest focal point, at full drive [Pa]
     float drive = 0.0F;     ///< Σ intensity, in terms of drives; above 1 means full
-    float own = 0.0F;       ///< pressure that the loudest makes with its own share of a drive
-    float energy = 0.0F;    ///< of the drives if focal points do not add up
+    float own = 0.0F;       ///< at the loudest focal point, by its own share of the drive [Pa]
+    float energy = 0.0F;    ///< of the drives, if focal points do not add up
   };
-  /// The largest drive, or factor of all intensities, that keeps a limit.
+  /// The largest drive, or factor on all intensities, within a limit.
   struct Allowed {
     float most;
     SafetyLimit limit;
@@ -121,10 +123,10 @@ class SafetyLimiter final : public SampleStage {
   struct Focus {
     FocusSample last;
     float given = 0.0F;          ///< intensity before limits
-    float full_pressure = 0.0F;  ///< at the place of `last` [Pa]
+    float full_pressure = 0.0F;  ///< at the position of `last` [Pa]
     float wanted_pressure = 0.0F;
   };
-  /// A mean over time that keeps within a cap, (G3).
+  /// A mean over time that is kept within a cap, (G3).
   struct Mean {
     float mean = 0.0F, low = 0.0F;
     float allowed(float cap) const;
@@ -156,7 +158,7 @@ class SafetyLimiter final : public SampleStage {
   std::shared_ptr<const Mute> mute_;
 
   std::vector<Focus> focus_;
-  bool holding_ = false;  // all focal points, until they are silent
+  bool holding_ = false;  // all focal points are held until they are silent
   SafetyLimit held_for_{};
   float ceiling_, unmuted_ = 1.0F;
   std::int64_t silent_ = 0;  // samples

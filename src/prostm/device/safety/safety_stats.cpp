@@ -1,4 +1,4 @@
-// The numbers of a limiter.
+// Statistics of the limiter.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,29 +38,35 @@ constexpr std::array kStats{
     count("not_finite", &S::not_finite, "Samples with a number that was not finite."),
     count("out_of_range", &S::out_of_range, "Samples with an intensity outside 0 to 1."),
     count("change", &S::change, "Samples whose intensity changed too fast."),
-    count("power", &S::power, "Samples above the limit of power."),
-    count("place", &S::place, "Samples where the array's levels are not known."),
+    count("power", &S::power, "Samples above the limit on power."),
+    count("place", &S::place, "Samples at positions where the array's levels are not known."),
     count("intensity", &S::intensity, "Samples above the cap on intensity."),
-    count("acoustic_pressure", &S::acoustic_pressure, "Samples above that on acoustic pressure."),
+    count("acoustic_pressure", &S::acoustic_pressure,
+          "Samples above the cap on acoustic pressure."),
     count("radiation_pressure", &S::radiation_pressure,
-          "Samples above that on radiation pressure."),
+          "Samples above the cap on radiation pressure."),
     count("mean_radiation_pressure", &S::mean_radiation_pressure,
-          "Samples above that on its mean over a second."),
-    count("head_level", &S::head_level, "Samples above that on the level at the head."),
-    count("jump", &S::jump, "Samples in which a jump waited for silence."),
+          "Samples above the cap on mean radiation pressure."),
+    count("head_level", &S::head_level, "Samples above the cap on the level at the head."),
+    count("jump", &S::jump, "Samples held because of a jump, until silent."),
     count("ramp", &S::ramp, "Samples in a ramp after the start, silence or a mute."),
-    level("acoustic_low_pa", "Pa", &S::acoustic_low, "Largest acoustic pressure, rms, at least."),
-    level("acoustic_high_pa", "Pa", &S::acoustic_high, "The same at most."),
-    level("radiation_low_pa", "Pa", &S::radiation_low, "Largest radiation pressure, at least."),
-    level("radiation_high_pa", "Pa", &S::radiation_high, "The same at most."),
-    level("mean_low_pa", "Pa", &S::mean_low, "Largest mean radiation pressure, at least."),
-    level("mean_high_pa", "Pa", &S::mean_high, "The same at most."),
-    level("head_low_db", "dB", &S::head_low, "Largest mean sound level at the head, at least."),
-    level("head_estimate_db", "dB", &S::head_estimate, "The same as it is capped."),
-    level("head_bound_db", "dB", &S::head_bound, "The same at most, all transducers in phase."),
+    level("acoustic_low_pa", "Pa", &S::acoustic_low,
+          "Largest acoustic pressure, rms: lower bound."),
+    level("acoustic_high_pa", "Pa", &S::acoustic_high,
+          "Largest acoustic pressure, rms: upper bound."),
+    level("radiation_low_pa", "Pa", &S::radiation_low, "Largest radiation pressure: lower bound."),
+    level("radiation_high_pa", "Pa", &S::radiation_high,
+          "Largest radiation pressure: upper bound."),
+    level("mean_low_pa", "Pa", &S::mean_low, "Largest mean radiation pressure: lower bound."),
+    level("mean_high_pa", "Pa", &S::mean_high, "Largest mean radiation pressure: upper bound."),
+    level("head_low_db", "dB", &S::head_low, "Largest mean sound level at the head: lower bound."),
+    level("head_estimate_db", "dB", &S::head_estimate,
+          "Largest mean sound level at the head: the estimate that is capped."),
+    level("head_bound_db", "dB", &S::head_bound,
+          "Largest mean sound level at the head: upper bound, all transducers in phase."),
 };
 
-/// The level of a mean share of the energy of a full drive; 0 for silence.
+/// Returns the level for a mean share of a full drive's energy; 0 for silence.
 double at_share(double full_drive, float share) {
   return share > 0.0F ? std::max(0.0, full_drive + 10.0 * std::log10(static_cast<double>(share)))
                       : 0.0;

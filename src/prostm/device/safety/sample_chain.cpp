@@ -5,7 +5,7 @@
 namespace prostm {
 namespace {
 
-constexpr std::size_t kAtOnce = 64;  // samples of a decimated stream that are made at a time
+constexpr std::size_t kAtOnce = 64;  // decimated samples computed at a time
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 #pragma once
-/// From an emission's samples to those of a device: stages in a row, a limiter last.
+/// Stages that turn an emission's samples into those of a device, with a limiter as the last one.
 
 #include <atomic>
 #include <memory>
@@ -20,8 +20,8 @@ class SharedIntensity final : public SampleStage {
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
 };
 
-/// Passes on the first of every `factor` samples. A sample in which an emission falls silent to
-/// jump may be dropped; the limiter silences the jump again.
+/// Passes on the first of every `factor` samples. It may drop the silent sample within which an
+/// emission jumps; the limiter then silences the jump again.
 class Decimation final : public SampleStage {
  public:
   explicit Decimation(int factor) : factor_(factor) {}
@@ -34,16 +34,16 @@ class Decimation final : public SampleStage {
   std::vector<FocusSample> scratch_;
 };
 
-/// Hands a copy of every sample to one other thread, as long as that keeps up.
+/// Passes a copy of every sample to one other thread, as long as that thread keeps up.
 class SampleTap final : public SampleStage {
  public:
-  /// @param samples number that may wait, each of one focal point.
+  /// @param samples capacity of the queue, in samples of one focal point.
   explicit SampleTap(std::size_t samples) : ring_(samples) {}
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
 
-  /// Takes the oldest waiting sample; false if no sample waits. The other thread.
+  /// Takes the oldest sample of the queue; false if it is empty. Called by the other thread.
   bool next(FocusSample& out) { return ring_.pop(out); }
-  /// Number of samples that found no room. Any thread.
+  /// Number of samples dropped because the queue was full. Any thread.
   std::int64_t lost() const { return lost_.load(std::memory_order_relaxed); }
 
  private:
@@ -51,13 +51,13 @@ class SampleTap final : public SampleStage {
   std::atomic<std::int64_t> lost_{0};
 };
 
-/// A source, any stages after it, and a limiter that stays the last.
+/// A source, any stages after it, and a limiter that is always the last.
 class SampleChain final : public SampleSource {
  public:
   /// @param source outlives this.
   SampleChain(SampleSource& source, const SampleLimits& limits);
 
-  /// Adds a stage after the existing ones, before the limiter. @pre nothing pulls.
+  /// Adds a stage after the existing ones, before the limiter. @pre no thread is pulling.
   template <class Stage, class... Args>
   Stage& add(Args&&... args) {
     auto stage = std::make_unique<Stage>(std::forward<Args>(args)...);
@@ -71,13 +71,13 @@ class SampleChain final : public SampleSource {
     limiter_.fill(first, out);
     if (watch_ != nullptr) watch_->look(first, out, foci());
   }
-  /// Falls silent while this is on, whatever the source does. @pre nothing pulls.
+  /// Silences the output while the mute is on, whatever the source does. @pre no thread is pulling.
   void obey(std::shared_ptr<const Mute> mute) noexcept { limiter_.obey(std::move(mute)); }
-  /// Lets somebody look at what leaves; it outlives this. @pre nothing pulls.
+  /// Shows all output to `watch`, which outlives this. @pre no thread is pulling.
   void show(SoundWatch& watch) noexcept { watch_ = &watch; }
-  /// Work of the limiter. Any thread.
+  /// Statistics of the limiter. Any thread.
   SafetyStats safety() const { return limiter_.stats(); }
-  /// Samples of a focal point that it changed because a stage erred. Any thread.
+  /// Samples of a focal point that it changed because of a stage's error. Any thread.
   std::int64_t limited() const { return erred_samples(safety()); }
 
  private:
@@ -88,9 +88,10 @@ class SampleChain final : public SampleSource {
   SoundWatch* watch_ = nullptr;
 };
 
-/// Makes the chain that a device needs: decimated, and with one intensity if it has only one.
-/// @param limits of the emission: the rate is the device's, and with decimation samples may change
-/// more, so that the change in time stays the same.
+/// Makes the chain for a device: with its decimation, and with one shared intensity if the device
+/// has only one.
+/// @param limits of the emission. The chain uses the device's sample rate, and allows a larger
+/// change per sample with decimation, so that the change per time stays the same.
 std::unique_ptr<SampleChain> make_sample_chain(SampleSource& source, const DeviceInfo& device,
                                                const SampleLimits& limits);
 

@@ -7,7 +7,7 @@
 namespace prostm {
 namespace {
 
-constexpr std::int64_t kMargin = 2;  // samples, for what the limiter's ramp rounds
+constexpr std::int64_t kMargin = 2;  // samples, for the rounding of the limiter's ramp
 
 }  // namespace
 
@@ -17,7 +17,7 @@ SoundWatch::SoundWatch(std::shared_ptr<const Mute> mute, double sample_rate)
       silence_samples_(std::llround(std::ceil(kSilenceTime * sample_rate))) {}
 
 void SoundWatch::look(std::int64_t first, std::span<const FocusSample> out, int foci) noexcept {
-  // these samples were all made under a mute only if it was on before them
+  // all these samples were made under a mute only if it was already on before them
   const bool muted = mute_ && mute_->on(), held = muted && was_muted_;
   was_muted_ = muted;
   const auto width = static_cast<std::size_t>(foci);

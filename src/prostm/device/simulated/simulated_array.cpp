@@ -21,10 +21,11 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr std::int64_t kMostWaiting = 64;  // blocks, while a reader holds the lock
+constexpr std::int64_t kMostWaiting =
+    64;  // blocks that may be unpublished while a reader holds the lock
 
-/// Returns the pressure of the whole array 200 mm over its origin [Pa, rms], where an intensity of
-/// 1 means full output. 0 if that point is behind the array or on it.
+/// Returns the pressure of intensity 1: that of the whole array at full output, 200 mm above its
+/// origin [Pa, rms]. 0 if that point is behind the array or on it.
 double full_scale_of(const TransducerArray& array, const Medium& medium) {
   const Vec3 middle(0.0, 0.0, 0.2);
   const Wave sound = wave(array, medium);
@@ -63,7 +64,7 @@ SteadyClock::duration to_duration(double seconds) {
   return std::chrono::round<SteadyClock::duration>(Seconds(seconds));
 }
 
-/// Data of the thread that pulls; no other thread looks at it while that thread runs.
+/// Data of the pulling thread; no other thread accesses it while that thread runs.
 struct Stream {
   SampleSource* source = nullptr;
   std::optional<BlockClock> clock;  // in real time
@@ -91,7 +92,7 @@ struct SimulatedArray::Impl {
   std::atomic<bool> refuses{false};
   std::atomic<std::int64_t> vanish_after{-1};
 
-  // published by the thread that pulls, under the mutex
+  // published by the pulling thread, under the mutex
   mutable std::mutex mutex;
   DeviceStatus status = DeviceStatus::Idle;
   std::string problem;
@@ -181,11 +182,11 @@ bool SimulatedArray::Impl::pull_block() {
     publish();
     status = DeviceStatus::Vanished;
     problem = "The simulated array vanished after " + std::to_string(stats.blocks) +
-              " blocks, as it was told to; start it again.";
+              " blocks, as requested; start it again.";
     return false;
   }
 
-  // fill, then look at the clock
+  // fill first, then read the clock
   const std::size_t size = stream.waiting.size() / static_cast<std::size_t>(kMostWaiting);
   stream.source->fill(stream.filled,
                       std::span(stream.waiting)
@@ -200,7 +201,7 @@ bool SimulatedArray::Impl::pull_block() {
   }
   ++stream.stats.blocks;
 
-  // a reader that holds the lock may have been put to sleep: in real time do not wait for it while
+  // a reader that holds the lock may have been descheduled: in real time, do not wait for it while
   // there is room
   std::unique_lock lock(mutex, std::defer_lock);
   if (settings.realtime && stream.waiting_blocks < kMostWaiting) {
@@ -212,8 +213,8 @@ bool SimulatedArray::Impl::pull_block() {
   return true;
 }
 
-/// Makes the waiting blocks readable. @pre the mutex is held, by the thread that pulls or while no
-/// thread pulls.
+/// Publishes the waiting blocks. @pre the mutex is held, by the pulling thread or while no thread
+/// is pulling.
 void SimulatedArray::Impl::publish() {
   const auto width = static_cast<std::size_t>(foci);
   const std::size_t capacity = ring.size() / width;
@@ -232,7 +233,7 @@ void SimulatedArray::Impl::publish() {
 /// Samples that have left the array. @pre the mutex is held.
 std::int64_t SimulatedArray::Impl::played() const {
   if (!clock) return filled;
-  // the block that plays now is among those still queued or the next one
+  // the block that plays now is among those in the queue, or the one before them
   const auto now = SteadyClock::now();
   const std::int64_t oldest = std::max<std::int64_t>(0, stats.blocks - most_queue - 1);
   for (std::int64_t block_index = stats.blocks - 1; block_index >= oldest; --block_index) {
@@ -269,7 +270,7 @@ std::string SimulatedArray::problem() const {
 
 DeviceStatus SimulatedArray::start(SampleSource& source) {
   if (impl_->refuses) {
-    return impl_->refuse("The simulated array refuses to start, as it was told to.");
+    return impl_->refuse("The simulated array refuses to start, as requested.");
   }
   if (status() == DeviceStatus::Running) {
     return impl_->refuse("The simulated array is running already; stop it first.");
@@ -296,7 +297,7 @@ void SimulatedArray::stop() {
 DeviceStatus SimulatedArray::load_segment(std::span<const FocusSample> samples, int foci) {
   Impl& impl = *impl_;
   if (impl.refuses) {
-    return impl.refuse("The simulated array refuses the segment, as it was told to.");
+    return impl.refuse("The simulated array refuses the segment, as requested.");
   }
   const bool running = status() == DeviceStatus::Running;
   const std::string problem = segment_problem(samples, foci, impl.settings.max_foci);
@@ -381,7 +382,7 @@ std::int64_t SimulatedArray::samples() const {
 std::vector<std::complex<double>> SimulatedArray::output(std::int64_t first, std::int64_t n) const {
   const SimulatedArraySettings& s = impl_->settings;
   ArrayOutput array(impl_->array, impl_->medium, output_settings(s, impl_->array, impl_->medium));
-  // in real time the oldest kept samples may be gone a moment later
+  // in real time the oldest samples may be dropped a moment later
   const auto moment = static_cast<std::int64_t>(s.realtime ? 0.1 * s.sample_rate : 0.0);
   const std::int64_t kept = std::max<std::int64_t>(0, samples() - impl_->history_samples + moment);
   const std::int64_t begin = std::min(first, std::max(kept, first - kLeadIn));

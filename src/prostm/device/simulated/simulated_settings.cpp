@@ -1,4 +1,4 @@
-// Settings of a simulated array, and its info before it is made.
+// Settings of a simulated array, and its info without making one.
 #include "prostm/device/simulated/simulated_array.hpp"
 
 namespace prostm {

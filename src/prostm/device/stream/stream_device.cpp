@@ -24,13 +24,13 @@ const StreamSettings& validated(const StreamSettings& s) {
   return s;
 }
 
-/// Data of the thread that pulls; no other thread looks at it while that thread runs.
+/// Data of the pulling thread; no other thread accesses it while that thread runs.
 struct Stream {
   SampleSource* source = nullptr;
   std::optional<BlockClock> clock;
   DeviceStats stats;
-  std::int64_t unsent = 0;  // samples that found no room
-  std::int64_t loop = 0;    // number of the segment that plays
+  std::int64_t unsent = 0;  // samples dropped because the ring was full
+  std::int64_t loop = 0;    // number of the playing segment
   std::int64_t loop_first = 0, loop_play_ns = 0;
 };
 
@@ -49,7 +49,7 @@ struct StreamDevice::Impl {
   const DeviceInfo info;
   stream::StreamServer server;
 
-  // published by the thread that pulls, under the mutex
+  // published by the pulling thread, under the mutex
   mutable std::mutex mutex;
   DeviceStatus status = DeviceStatus::Idle;
   std::string problem;
@@ -58,7 +58,7 @@ struct StreamDevice::Impl {
 
   Stream stream;
   std::int64_t before = 0;         // samples of the session before this start
-  std::vector<FocusSample> spare;  // a block that finds no room
+  std::vector<FocusSample> spare;  // buffer for a block that will be dropped
   SegmentPlayer segment;
   std::int64_t loops = 0, loops_before = 0;  // loaded, in all and before the segment's reset
   std::jthread thread;
@@ -121,7 +121,7 @@ void StreamDevice::Impl::run(const std::stop_token& stop) {
 }
 
 void StreamDevice::Impl::pull_block() {
-  // fill, then look at the clock
+  // fill first, then read the clock
   const std::int64_t block = stream.stats.blocks, first = block * settings.block_samples;
   stream::BlockRecord* record = server.draft();
   const auto size = static_cast<std::size_t>(settings.block_samples * stream.source->foci());
@@ -141,14 +141,14 @@ void StreamDevice::Impl::pull_block() {
     stream.unsent += settings.block_samples;
   }
 
-  // a reader that holds the lock may have been put to sleep: do not wait for it
+  // a reader that holds the lock may have been descheduled: do not wait for it
   const std::unique_lock lock(mutex, std::try_to_lock);
   if (!lock) return;
   stats = stream.stats;
   clock = stream.clock;
 }
 
-/// Hands the filled record to the server's thread.
+/// Passes the filled record to the server's thread.
 void StreamDevice::Impl::send(stream::BlockRecord& record, std::int64_t block) {
   record.first = before + block * settings.block_samples;
   record.play_ns = stream::to_ns(stream.clock->play_time(block));
@@ -227,7 +227,7 @@ DeviceStatus StreamDevice::load_segment(std::span<const FocusSample> samples, in
   if (!problem.empty()) return impl.refuse(problem);
   if (samples.size() > kMostLoop) {
     return impl.refuse("The loop has " + std::to_string(samples.size()) +
-                       " focal points in all its samples; a stream repeats at most " +
+                       " focal points over all its samples; a stream repeats at most " +
                        std::to_string(kMostLoop) + ".");
   }
   if (running && (impl.stream.source != &impl.segment || impl.segment.foci() != foci)) {
@@ -258,7 +258,7 @@ std::int64_t StreamDevice::samples() const {
   const Impl& impl = *impl_;
   const std::lock_guard lock(impl.mutex);
   if (!impl.clock) return 0;
-  // the block that plays now is among those that are sent ahead, or the one before them
+  // the block that plays now is among those sent ahead, or the one before them
   const auto now = SteadyClock::now();
   const std::int64_t oldest =
       std::max<std::int64_t>(0, impl.stats.blocks - impl.settings.queue_blocks() - 1);

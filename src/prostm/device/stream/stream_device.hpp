@@ -1,5 +1,5 @@
 #pragma once
-/// A device for programs that listen: timed focal samples over TCP and UDP, prostm-stream/1.
+/// A device that sends timed samples of focal points to other programs, by prostm-stream/1.
 
 #include <cstdint>
 #include <memory>
@@ -12,14 +12,15 @@
 
 namespace prostm {
 
-/// Keeps real time by itself (BlockClock), whether anybody listens or not: it pulls a block every
-/// block period and hands it to a thread that sends it to up to eight subscribers. Its own thread
-/// never waits for them. The samples of a session count on from start to start; those of this
-/// interface count from 0 at each start.
+/// Keeps real time by itself (BlockClock), with or without subscribers: it pulls a block every
+/// block period and passes it to a thread that sends it to up to eight subscribers. The device's
+/// own thread never waits for them. In the protocol, samples are numbered on from start to start
+/// within a session; in this interface, they are numbered from 0 at each start.
 class StreamDevice final : public Device {
  public:
-  /// Listens at once. @param address a number, or localhost; port 0: any that is free.
-  /// @throws std::invalid_argument about a setting, or an address that cannot be listened at.
+  /// Starts listening. @param address numeric, or localhost; port 0: any free one.
+  /// @throws std::invalid_argument for a setting out of bounds, or an address where it cannot
+  /// listen.
   StreamDevice(const StreamSettings& settings, const HostPort& address);
   ~StreamDevice() override;
 
@@ -29,8 +30,8 @@ class StreamDevice final : public Device {
   std::string problem() const override;
   DeviceStatus start(SampleSource& source) override;
   void stop() override;
-  /// While a loop plays, the new one takes over at its end; while a stream plays, loops are
-  /// refused. At most kMostLoop focal points in all.
+  /// While a loop plays, a new one replaces it at its end; while a stream plays, loops are refused.
+  /// A loop holds at most kMostLoop focal points, over all its samples.
   DeviceStatus load_segment(std::span<const FocusSample> samples, int foci) override;
   DeviceStats stats() const override;
   std::int64_t samples() const override;

@@ -10,7 +10,7 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kMagic = {'P', 'S', 'T', 'M'};
 constexpr std::uint8_t kVersion = 1;
 
-/// A number's bytes, the least first, on any machine.
+/// Reads a little-endian number, on any machine.
 template <class T>
 requires std::is_integral_v<T> T get(std::span<const std::uint8_t> bytes, std::size_t at) {
   std::make_unsigned_t<T> value = 0;
@@ -25,7 +25,7 @@ Reading wrong(Reason reason) {
   return reading;
 }
 
-/// Bytes of a receiver's message after the header; 0 for another kind of message.
+/// Size of the body of a receiver's message; 0 for other kinds of messages.
 std::size_t body_of(std::uint8_t kind) {
   switch (static_cast<Kind>(kind)) {
     case Kind::Subscribe:
@@ -66,11 +66,11 @@ const char* sentence_of(Reason reason) {
     case Reason::Late:
       return "prostm was late: from this sample on all play times are later.";
     case Reason::NoLoop:
-      return "prostm plays a stream that is no loop; subscribe to samples.";
+      return "There is no loop: prostm plays a stream; subscribe to samples.";
     case Reason::ProstmEnds:
       return "prostm ends.";
     case Reason::Asked:
-      return "The receiver said BYE.";
+      return "The receiver sent BYE.";
     case Reason::NothingHeard:
       return "Nothing was heard from the receiver for 1 s; it must renew every 0.25 s.";
     case Reason::Foreign:
@@ -87,7 +87,7 @@ const char* sentence_of(Reason reason) {
       return "A field of SUBSCRIBE is wrong: want must be 1 or 2, foci 0 to 8, stride 1 to 1000, "
              "flags 0 or 1, the rest 0.";
     case Reason::Full:
-      return "Eight receivers are subscribed already, which is the most; end one of them.";
+      return "Eight receivers are subscribed already, the maximum; stop one of them.";
     case Reason::LoopOverUdp:
       return "Loops must arrive whole, so they are sent over TCP alone; subscribe over TCP.";
     case Reason::NotSubscribed:

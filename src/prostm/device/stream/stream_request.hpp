@@ -1,5 +1,5 @@
 #pragma once
-/// The messages of receivers to prostm-stream/1, as docs/devices/stream.md has them.
+/// Messages from receivers in prostm-stream/1, as specified in docs/devices/stream.md.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +8,7 @@
 namespace prostm::stream {
 
 inline constexpr std::size_t kHeaderBytes = 16;
-inline constexpr std::size_t kSubscribeBytes = 72;  // HELLO has as many, so UDP magnifies nothing
+inline constexpr std::size_t kSubscribeBytes = 72;  // same as HELLO, so UDP amplifies nothing
 inline constexpr std::size_t kLongestRequest = kHeaderBytes + kSubscribeBytes;
 inline constexpr int kMostStride = 1000;
 inline constexpr int kMostFoci = 8;
@@ -47,19 +47,19 @@ enum class Reason : std::uint16_t {  // of STATE, END and ERROR
   NotSubscribed = 39
 };
 
-/// Says a reason in a sentence.
+/// Returns a sentence for a reason.
 const char* sentence_of(Reason reason);
 
-/// Parts of SUBSCRIBE that say what is to be sent.
+/// Fields of SUBSCRIBE that select the data to send.
 struct Wishes {
   bool loops = false;        ///< closed loops; else samples
-  std::uint8_t foci = 0;     ///< the first so many focal points; 0: all
-  std::uint16_t stride = 1;  ///< each sample whose index is a multiple of it; 1..kMostStride
+  std::uint8_t foci = 0;     ///< send this many focal points, the first ones; 0: all
+  std::uint16_t stride = 1;  ///< send samples whose index is a multiple of it; 1..kMostStride
   bool shared = false;       ///< one intensity for all focal points of a sample
 
   bool operator==(const Wishes&) const = default;
 
-  /// Focal points sent of a sample that has so many.
+  /// Number of focal points sent of a sample with `all` focal points.
   std::size_t foci_of(int all) const {
     const auto n = static_cast<std::size_t>(all);
     return foci == 0 || foci > n ? n : foci;
@@ -76,15 +76,15 @@ struct Request {
 
 /// Result of read_request.
 struct Reading {
-  std::size_t used = 0;         ///< bytes of the message; 0: it is not complete yet, or wrong
-  Reason wrong = Reason::None;  ///< None: nothing is
+  std::size_t used = 0;         ///< bytes of the message; 0: incomplete or invalid
+  Reason wrong = Reason::None;  ///< None: the message is valid or incomplete
   Request request;
 };
 
-/// Reads the message at the beginning of some bytes, which may be any bytes.
+/// Reads the message at the beginning of the bytes, which are not trusted.
 Reading read_request(std::span<const std::uint8_t> bytes);
 
-/// Whether the bytes begin with the magic word, as far as they go.
+/// Whether the bytes, possibly fewer than four, match the beginning of the magic word.
 bool has_magic(std::span<const std::uint8_t> bytes);
 
 }  // namespace prostm::stream

@@ -10,7 +10,7 @@ template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
   v.field({"block_samples", "", 1, 400, "samples that are sent at a time"}, s.block_samples);
   v.field({"lead_time", "s", 0.001, 0.2,
-           "time from a block's sending to its playing, for the delays of a network"},
+           "time from sending a block to playing it, for the delays of a network"},
           s.lead_time);
   v.field({"max_foci", "", 1, 8, "largest number of focal points of a sample"}, s.max_foci);
 }

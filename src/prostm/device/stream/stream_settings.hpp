@@ -7,8 +7,8 @@ namespace prostm {
 
 struct StreamSettings {
   int block_samples = 40;  ///< a block is 1 ms; 1..400
-  /// Time from a block's sending to its playing, in whole blocks [s]; 0.001..0.2. It covers the
-  /// delays of this machine, of the network and of the receiver, and is part of the latency.
+  /// Time from sending a block to playing it, rounded up to whole blocks [s]; 0.001..0.2. It covers
+  /// the delays of this machine, of the network and of the receiver, and is part of the latency.
   double lead_time = 0.020;
   int max_foci = 8;  ///< 1..8
 

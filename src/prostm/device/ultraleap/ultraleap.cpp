@@ -11,8 +11,8 @@
 namespace prostm {
 namespace {
 
-constexpr double kFullRate = 40e3;  // rate for which the bounds of an emission are made [Hz]
-constexpr double kRounding = 1e-4;  // of rates that are told as floats
+constexpr double kFullRate = 40e3;  // rate for which an emission's bounds are defined [Hz]
+constexpr double kRounding = 1e-4;  // of rates that the SDK reports as floats
 
 constexpr UltraleapKit kKits[] = {
     {"USX", nullptr, 0.121},
@@ -84,7 +84,7 @@ void remember_ultraleap(const DeviceSetup& setup, const DeviceInfo& info) {
   Opened& all = opened();
   const std::lock_guard lock(all.mutex);
   all.infos[{setup.address, setup.foci}] = info;
-  all.infos[{std::string(), setup.foci}] = info;  // for who asks without an address
+  all.infos[{std::string(), setup.foci}] = info;  // for calls without an address
 }
 
 }  // namespace prostm

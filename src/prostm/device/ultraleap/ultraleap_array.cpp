@@ -1,4 +1,4 @@
-// The adapter to the vendor's SDK; nothing where that is missing.
+// The adapter to the vendor's SDK; empty in builds without it.
 #if defined(PROSTM_ULTRALEAP)
 #include <algorithm>
 #include <chrono>
@@ -49,7 +49,7 @@ class UltraleapArray final : public Device {
   DeviceInfo info_;
   SegmentPlayer segment_;
   SampleSource* source_ = nullptr;
-  // outlives the session, whose end may still call it
+  // outlives the session, which may still call it while it ends
   const std::unique_ptr<UltraleapEmission> emission_ = std::make_unique<UltraleapEmission>();
 
   mutable std::mutex mutex_;  // guards the members below; never held in the callback
@@ -85,7 +85,7 @@ DeviceStatus UltraleapArray::refuse(const std::string& sentence) {
   return DeviceStatus::Refused;
 }
 
-/// The status, with what ended the emission. @pre locked.
+/// Returns the status; Vanished if the emission has ended by itself. @pre locked.
 DeviceStatus UltraleapArray::state() const {
   if (status_ != DeviceStatus::Running) return status_;
   emission_->watch();
@@ -106,21 +106,21 @@ std::string UltraleapArray::problem() const {
     return "The Ultraleap array '" + (session_ ? session_->identifier() : address_.device) +
            "' changed its rate from " + std::to_string(std::lround(info_.sample_rate)) + " to " +
            std::to_string(std::lround(1.0 / std::max(1e-9, emission_->found_interval()))) +
-           " Hz while it played: open it anew.";
+           " Hz while it played: open it again.";
   }
   if (emission_->fault() == UltraleapEmission::Fault::Stalled)
-    return "The Ultraleap Haptics SDK has asked for no samples for a second: start again.";
-  return "The Ultraleap Haptics SDK failed while it asked for samples: start again.";
+    return "The Ultraleap Haptics SDK has requested no samples for a second: start again.";
+  return "The Ultraleap Haptics SDK failed while it requested samples: start again.";
 }
 
-/// Lets go of the session, if it is still there, and makes another.
+/// Closes the session, if it is open, and opens another.
 void UltraleapArray::reopen(int foci) {
   std::unique_ptr<UltraleapSession> old;
   {
     const std::lock_guard lock(mutex_);
     old.swap(session_);
   }
-  old.reset();  // the claim must be free first
+  old.reset();  // release the claim first
   auto fresh = std::make_unique<UltraleapSession>(address_, foci, *emission_);
   const std::lock_guard lock(mutex_);
   session_ = std::move(fresh);
@@ -199,7 +199,7 @@ DeviceStats UltraleapArray::stats() const {
   return out;
 }
 
-/// One array in words: "USX:1 (Mock, firmware 1.2), free".
+/// Describes an array: "USX:1 (Mock, firmware 1.2), free".
 std::string words_of(const ulh::Device& device) {
   std::string out = device.getIdentifier();
   if (const auto info = device.getInfo()) {

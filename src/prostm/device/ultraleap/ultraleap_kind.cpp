@@ -8,7 +8,7 @@ namespace prostm {
 
 DeviceFinding look_for_ultraleap(const DeviceSetup& /*setup*/) {
   return {false,
-          "This build cannot look for Ultraleap arrays: install the vendor's Haptics SDK 3, and "
+          "This build cannot search for Ultraleap arrays: install the vendor's Haptics SDK 3, and "
           "configure prostm with -DPROSTM_ULTRALEAP_ROOT=FOLDER."};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Arrays of Ultraleap as a kind of device.
+/// Ultraleap arrays as a kind of device.
 
 #include "prostm/device/device_kind.hpp"
 

@@ -35,7 +35,7 @@ class LongestStep {
   double squared_ = 0.0;
 };
 
-/// The news for an emitter at the beginning of a block.
+/// Event for an emitter at the start of a block.
 enum class News : std::uint8_t { None, Plan, Lost };
 
 struct Emitter::Exchange {
@@ -47,7 +47,7 @@ struct Emitter::Exchange {
   TakeOverLog log;
   std::shared_ptr<const Mute> mute;  // may be null
 
-  /// Takes the newest message, if one came; counts refused plans. Device's thread.
+  /// Takes the newest message, if any; counts refused plans. Device's thread.
   News receive(EmitStats& stats) {
     const bool fresh = inbox.refresh();
     const Message& message = inbox.value();
@@ -57,7 +57,7 @@ struct Emitter::Exchange {
     return message.lost ? News::Lost : News::Plan;
   }
 
-  /// Fills a block with an emitter's samples; first tells the emitter the news. Device's thread.
+  /// Lets an emitter handle the newest event, then fills a block with its samples. Device's thread.
   template <class Impl>
   void fill(Impl& impl, std::int64_t first, std::span<FocusSample> out) {
     const auto foci = static_cast<std::size_t>(settings.foci);
@@ -70,7 +70,7 @@ struct Emitter::Exchange {
   }
 
  private:
-  /// Counts `samples` more of all focal points and makes the counters readable.
+  /// Adds `samples`, summed over focal points, to the counters and publishes them.
   void publish(EmitStats& stats, std::size_t samples, const LongestStep& longest) {
     stats.samples += static_cast<std::int64_t>(samples);
     stats.max_focus_step = longest.length();

@@ -20,14 +20,14 @@ std::vector<double> envelope_of(const EmitSettings& settings, int period) {
   return values;
 }
 
-/// Action of the focal points at their next zeros.
+/// Action of all focal points at their next zeros.
 enum class Next : std::uint8_t { GoOn, TakeOver, Rest };
 
-/// A focal point plays what it was given until it waits for something new. At its zero it goes
-/// there; it rises at the next zero of its phase, which is the same one if that has not changed.
+/// A focal point plays its focus until it is assigned a new one. It then waits for a zero, moves,
+/// and rises at the next zero of its new phase: the same zero if the phase has not changed.
 enum class State : std::uint8_t { Plays, Waits, Rises };
 
-/// Part of a focal point in a plan.
+/// A focal point's part in a plan.
 struct Part {
   Vec3 p_D = Vec3(0.0, 0.0, 0.2);  // unused focal points rest 200 mm above the array
   double amplitude = 0.0;          // intensity at the peak
@@ -70,10 +70,10 @@ struct FocusEmitter::Impl {
   TakeOverLog::Entry entry = TakeOverLog::kNone;
   Next next = Next::GoOn;
   std::size_t clock = 0;        // sample of the period, of all focal points
-  bool stood = true;            // whether the clock stood since the last sample
-  bool to_rest = false;         // the focal points that wait are to fall silent
-  bool to_begin = false;        // the plan does not sound as a whole yet
-  bool fed = false;             // a plan came and was not lost since
+  bool stood = true;            // whether the clock paused after the last sample
+  bool to_rest = false;         // waiting focal points fall silent
+  bool to_begin = false;        // not all foci of the plan are audible yet
+  bool fed = false;             // a plan was received and not lost since
   std::int64_t since_plan = 0;  // samples
   std::size_t to_draw = 0;      // samples of the plan's first period that are left
 
@@ -99,7 +99,7 @@ struct FocusEmitter::Impl {
   void write(Focus& f, FocusSample& out);
 };
 
-/// Acts on the newest message, if one came.
+/// Handles the newest message, if any.
 void FocusEmitter::Impl::receive(std::int64_t sample) {
   const News news = exchange.receive(stats);
   if (news == News::None) return;
@@ -109,7 +109,7 @@ void FocusEmitter::Impl::receive(std::int64_t sample) {
   if (fed) exchange.log.arrive(exchange.inbox.value().plan.id, 1.0, sample);
 }
 
-/// Gives each focal point its focus of the plan, (B5); the others fall silent where they are.
+/// Assigns the plan's foci to focal points, (B5); the others fall silent where they are.
 void FocusEmitter::Impl::place(const LiftedPlan& plan) {
   const std::size_t count = std::min(plan.foci.size(), foci().size());
   stats.dropped_paths += static_cast<std::int64_t>(plan.foci.size() - count);
@@ -133,7 +133,7 @@ void FocusEmitter::Impl::place(const LiftedPlan& plan) {
   }
 }
 
-/// Scales all by one factor if Σ I² at the peak exceeds the limit.
+/// Scales all intensities by one factor if Σ I² at the peak exceeds the limit.
 void FocusEmitter::Impl::limit_power() {
   double power = 0.0;
   for (const Focus& f : foci()) power += f.wanted.amplitude * f.wanted.amplitude;
@@ -145,7 +145,7 @@ void FocusEmitter::Impl::limit_power() {
   }
 }
 
-/// Gives each focal point what it is to do from its next zero on.
+/// Sets what each focal point does from its next zero on.
 void FocusEmitter::Impl::assign(std::int64_t sample) {
   exchange.log.leave(entry);
   entry = TakeOverLog::kNone;
@@ -165,7 +165,7 @@ void FocusEmitter::Impl::assign(std::int64_t sample) {
   next = Next::GoOn;
 }
 
-/// Lets those go where they are wanted that are silent, in this sample and the last one.
+/// Moves waiting focal points that are silent in this sample and the last one to their new foci.
 void FocusEmitter::Impl::go_over() {
   for (Focus& f : foci()) {
     if (f.state != State::Waits) continue;
@@ -176,8 +176,8 @@ void FocusEmitter::Impl::go_over() {
   }
 }
 
-/// Gives those their amplitude that have a zero. While others still play an older plan, only what
-/// the power limit leaves; the rest from the next zero on.
+/// Sets the amplitude of rising focal points at a zero. While others still play an older plan, they
+/// get only what the power limit leaves, and the rest at a later zero.
 void FocusEmitter::Impl::rise() {
   double others = 0.0, risen = 0.0;  // Σ I² at the peak
   for (Focus& f : foci()) {
@@ -216,7 +216,7 @@ void FocusEmitter::Impl::write(Focus& f, FocusSample& out) {
   stats.silenced += f.now.silenced ? 1 : 0;
 }
 
-/// Whether the clock is to stand: a focal point at its zero goes over in the next sample.
+/// Whether the clock pauses: a focal point at its zero moves to its new focus in the next sample.
 bool FocusEmitter::Impl::holds() {
   return std::any_of(foci().begin(), foci().end(), [this](const Focus& f) {
     const bool goes_over = next == Next::TakeOver || f.state == State::Waits;
@@ -247,7 +247,7 @@ void FocusEmitter::Impl::emit(std::int64_t sample, std::span<FocusSample> out) {
     exchange.log.draw(entry, 1.0 / static_cast<double>(envelope.size()), sample);
   }
 
-  // a zero lasts while there is nothing to modulate, and until its focal point has gone over
+  // a zero lasts while there is nothing to modulate, and until its focal point has moved
   stood = !sounding() || holds();
   if (!stood) clock = (clock + 1) % envelope.size();
 }

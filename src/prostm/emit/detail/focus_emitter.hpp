@@ -12,9 +12,9 @@ namespace prostm {
 /// plan takes over at the envelope's next zero, where its foci are matched to the focal points by
 /// least total distance (B5) and get their intensities, sqrt(pressure / full scale) at the peak,
 /// all scaled by one factor if the power limit requires it; they keep both until the next plan.
-/// With phases, each focal point goes over at a zero of its own; one whose phase changes is silent
-/// from there to the zero of its new phase. The focal points move between two silent samples; so a
-/// zero at which a plan takes over lasts one sample longer, for all, which keeps their phases.
+/// With phases, each focal point switches at a zero of its own; one whose phase changes is silent
+/// from that zero to the zero of its new phase. Focal points move between two silent samples, so a
+/// zero at which a plan takes over lasts one sample longer for all of them, which keeps the phases.
 ///
 /// The guarantees are those of PathEmitter; some are trivial here. After lose(), or when plans stop
 /// coming, the output is silent from the next zero on: at most one period, 40 ms.
@@ -28,7 +28,7 @@ class FocusEmitter final : public Emitter {
 
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
 
-  /// Samples of a period of the modulation.
+  /// Number of samples in a period of the modulation.
   int period() const;
 
  private:

@@ -10,7 +10,7 @@ namespace {
 constexpr double kRounding = 1e-6;
 constexpr double kNothing = 1e-9;  // an offset that counts as zero [m]
 
-/// Step of a path that goes round on its own [m].
+/// Step along a path with a period of its own [m].
 double own_step(const LiftedPath& path, double sample_rate, double max_step) {
   return std::min(path.speed / sample_rate, max_step);
 }
@@ -56,7 +56,7 @@ void FocusMotion::start(const LiftedPath& path, const PathPlace& place, const In
     const std::int64_t n = in_step.samples;
     arc_start_ = 0.0;  // and forwards: its place has no tangent
     sample_ = (in_step.count % n + n) % n;
-    turn_ = n;  // the lap ends with a sample that is still to come
+    turn_ = n;  // the lap's last sample is still to come
     lap_ = at_rest() ? 1 : std::max<std::int64_t>(1, n / in_step.laps);
   }
   if (path.speed <= kSlowest) {
@@ -80,7 +80,7 @@ void FocusMotion::jump(const LiftedPath& path, const PathPlace& place, const InS
   p_D_ = base_;
 }
 
-/// Returns the way from the start of the lap, as a share of it, after so many samples.
+/// Returns the distance from the start of the lap after this many samples, as a share of the lap.
 double FocusMotion::share_at(std::int64_t sample) const {
   if (!is_in_step()) return static_cast<double>(sample) / static_cast<double>(lap_);
   return static_cast<double>(sample * in_step_.laps % in_step_.samples) /

@@ -7,19 +7,19 @@
 
 namespace prostm {
 
-/// A path's part in a loop that all focal points share, (E10), and where the clock of that loop is.
-/// Without samples there is no such loop: the path goes round on its own, (E2).
+/// A path's part in a loop that all focal points share, (E10), and the state of the loop's clock.
+/// If `samples` is 0 there is no such loop: the path has a period of its own, (E2).
 struct InStep {
   std::int64_t base = 0;     ///< samples after which a new plan may take over
   std::int64_t samples = 0;  ///< of the loop, a multiple of `base`
   std::int64_t laps = 0;     ///< of the path in the loop; 0: it rests at its first point
-  std::int64_t count = 0;    ///< sample of the clock, any whole number
+  std::int64_t count = 0;    ///< count of the clock, any whole number
 };
 
 /// Below this speed a focal point is at rest [m/s].
 inline constexpr double kSlowest = 1e-6;
 
-/// Returns how many samples a lap of a path takes that goes round on its own, (E2): the fewest
+/// Returns the number of samples in a lap of a path with a period of its own, (E2): the fewest
 /// whose steps are within the path's speed and max_step [m]; 1 if a focal point would be at rest on
 /// it.
 /// @param sample_rate [Hz]. @pre the path is measured.
@@ -32,15 +32,15 @@ std::int64_t lap_samples(const LiftedPath& path, double sample_rate, double max_
 /// The remaining offset between the two is carried along and shrinks in each sample by as much as
 /// the largest step allows, (E3).
 ///
-/// A path in step is gone round forwards from its first point, at the pace of the loop, and joined
-/// at the place where the loop's clock is.
+/// A path in step is traversed forwards from its first point, at the pace of the loop, and joined
+/// at the place that corresponds to the loop's clock.
 class FocusMotion {
  public:
   /// @param sample_rate [Hz]; @param max_step largest step between samples [m].
   void configure(double sample_rate, double max_step);
 
-  /// True when the offset to `place` is gone within kMaxTransit wherever it points, and is at most
-  /// kMaxOffset.
+  /// Whether the offset to `place` is at most kMaxOffset and vanishes within kMaxTransit, whatever
+  /// its direction.
   bool reaches(const LiftedPath& path, const PathPlace& place, const InStep& in_step = {}) const;
   /// Joins a path at `place` without a jump: the next advance() goes one step from the last
   /// position. @param in_step part of the path in a loop; then `place` is place_in_step().
@@ -52,7 +52,8 @@ class FocusMotion {
   double advance();
 
   const Vec3& position() const { return p_D_; }
-  /// Returns its position on the path so many samples from now, if it goes on round it [m].
+  /// Returns the position on the path this many samples from now if the focal point stays on it
+  /// [m].
   /// @pre a path was joined or jumped to; samples >= 0.
   Vec3 ahead(std::int64_t samples) const;
   /// Whether a new plan may take over: at the end of a lap, or of the loop of a path in step.
@@ -70,7 +71,7 @@ class FocusMotion {
   double length() const { return path_.length; }  ///< length of a lap [m]
   /// Samples of a lap; 1 at rest, rounded down in step.
   std::int64_t lap_samples() const { return lap_; }
-  /// Returns how many samples a lap on `path` takes; 1 if it would be at rest on it.
+  /// Returns the number of samples in a lap on `path`; 1 if it would be at rest on it.
   std::int64_t lap_samples(const LiftedPath& path) const {
     return prostm::lap_samples(path, sample_rate_, max_step_);
   }
@@ -89,9 +90,9 @@ class FocusMotion {
   LiftedPath path_;
   double arc_start_ = 0.0, direction_ = 1.0;
   std::int64_t lap_ = 1,
-               sample_ = 1;  // samples a lap, and emitted ones of it; in step, of the loop
+               sample_ = 1;  // samples per lap, and emitted so far; in step: of the loop
   InStep in_step_;
-  std::int64_t turn_ = 0;  // in step: way in the lap, in samples of the loop
+  std::int64_t turn_ = 0;  // in step: progress in the lap, in samples of the loop
   std::size_t edge_ = 0;   // edge that held the last sample
   bool moving_over_ = false;
   Vec3 lap_end_ = Vec3::Zero();

@@ -6,7 +6,7 @@
 namespace prostm {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of a lap, that does not count as more
+constexpr double kRounding = 1e-6;  // excess that counts as rounding, as a share
 
 /// Whether a focal point would be at rest on the path.
 bool rests(const LiftedPath& path, double step) {

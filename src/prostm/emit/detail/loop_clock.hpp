@@ -7,14 +7,14 @@
 
 namespace prostm {
 
-/// Counts samples since the loop began. It goes on from plan to plan whose loops are as long.
+/// Counts samples since the loop began. It keeps counting across plans with the same loop length.
 class LoopClock {
  public:
   bool runs() const { return base_ > 0; }
-  /// Whether it counts this loop, or could begin to.
+  /// Whether it counts a loop of this length, or none.
   bool fits(const InStep& loop) const { return !runs() || base_ == loop.base; }
   void stop() { base_ = 0; }
-  /// Begins the loop; its first sample is the next one, or the last one.
+  /// Begins the loop so that its first sample is the next one; begin_last(): the last one.
   void begin_next(const InStep& loop) { begin(loop, -1); }
   void begin_last(const InStep& loop) { begin(loop, 0); }
   void tick() { ++last_; }

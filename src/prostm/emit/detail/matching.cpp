@@ -10,7 +10,7 @@ std::array<int, kMaxPaths> match_paths(const MatchCosts& cost, int foci, int pat
   constexpr double kNever = std::numeric_limits<double>::max();
   const std::size_t sets = std::size_t{1} << static_cast<std::size_t>(paths);
 
-  // least[t]: cost of the focal points so far that took exactly the paths of set t
+  // least[t]: least cost at which the focal points so far take exactly the paths of set t
   std::array<double, kSets> least, next;
   std::array<std::array<std::int8_t, kSets>, kMaxPaths> choice;
   least.fill(kNever);

@@ -32,14 +32,15 @@ struct Focus {
   FocusMotion motion;
   bool has_next = false;  // a newer plan decides what follows this lap …
   int next = kNoPath;     // … the path of it to follow, or kNoPath
-  bool in_fade = false;   // until the intensity is as its path wants
+  bool in_fade = false;   // until the intensity reaches that of its path
   bool jumped = false;    // whether it jumped in this sample
   TakeOverLog::Entry entry = TakeOverLog::kNone;
   std::int64_t to_draw = 0;  // samples of the path not drawn yet
   FocusSample last;
 };
 
-/// Where a focal point at `from` would join a path: where the loop's clock is, or where it is near.
+/// Returns where a focal point at `from` would join a path: at the place that corresponds to the
+/// loop's clock, or else at the nearest place.
 PathPlace meeting_place(const LiftedPath& path, const InStep& in_step, const Vec3& from) {
   if (in_step.samples == 0) return nearest_place(path, from);
   PathPlace place = place_in_step(path, in_step);
@@ -66,7 +67,7 @@ struct PathEmitter::Impl {
   std::array<Drive, kMaxPaths> drive;
   EmitStats stats;
   LongestStep longest_step;
-  bool fed = false;             // a plan came and was not lost since
+  bool fed = false;             // a plan was received and not lost since
   std::int64_t since_plan = 0;  // samples
   InStep loop;                  // of the newest plan
   LoopClock clock;
@@ -74,7 +75,7 @@ struct PathEmitter::Impl {
   std::span<Focus> foci() { return {focus.data(), static_cast<std::size_t>(settings.foci)}; }
   const LiftedPlan& plan() const { return exchange.inbox.value().plan; }
 
-  /// Whether it goes over to a new plan only at the end of its lap.
+  /// Whether it switches to a new plan only at the end of its lap.
   bool waits(const Focus& f) const {
     return !at_once && (f.motion.is_in_step() || f.motion.lap_samples() <= longest_lap);
   }
@@ -123,7 +124,7 @@ PathEmitter::Impl::Impl(Exchange& e, double rate, double fastest)
   }
 }
 
-/// Acts on the newest message, if one came.
+/// Handles the newest message, if any.
 void PathEmitter::Impl::receive(std::int64_t sample) {
   const News news = exchange.receive(stats);
   if (news == News::None) return;
@@ -144,7 +145,7 @@ void PathEmitter::Impl::receive(std::int64_t sample) {
   assign(sample);
   wind();
 
-  // a focal point that fades already, or need not wait, goes over at once if it can
+  // a focal point that is already fading, or need not wait, switches at once if it can
   for (std::size_t i = 0; i < foci().size(); ++i) {
     Focus& f = focus[i];
     if (f.state == State::Leaving) {
@@ -157,7 +158,7 @@ void PathEmitter::Impl::receive(std::int64_t sample) {
   }
 }
 
-/// Lets the clock begin the loop of the newest plan, when the loop in progress has ended.
+/// Starts the loop of the newest plan once the loop in progress has ended.
 void PathEmitter::Impl::wind() {
   if (loop.samples == 0 || clock.fits(loop)) return;
   bool ends = false;
@@ -177,12 +178,12 @@ InStep PathEmitter::Impl::part(const LiftedPath& path, std::int64_t count) const
   return in_step;
 }
 
-/// Samples until a focal point may go over to a new plan.
+/// Samples until a focal point may switch to a new plan.
 std::int64_t PathEmitter::Impl::time_left(const Focus& f) const {
   return f.state == State::Following && waits(f) ? f.motion.samples_left() : 0;
 }
 
-/// Samples until the loop of the newest plan begins; below 0 since it began.
+/// Samples until the loop of the newest plan begins; negative once it has begun.
 std::int64_t PathEmitter::Impl::time_to_loop() const {
   if (loop.samples == 0) return 0;
   if (clock.runs() && clock.fits(loop)) return -clock.last();
@@ -194,7 +195,7 @@ std::int64_t PathEmitter::Impl::time_to_loop() const {
   return first;
 }
 
-/// Cost of a take-over in (E5) [m]: the way to go, or a substitute for a fade.
+/// Cost of a take-over in (E5) [m]: the distance to move, or an equivalent for a fade.
 /// @param to_loop samples until the loop of the plan begins.
 double PathEmitter::Impl::cost(const Focus& f, const LiftedPath& path, std::int64_t to_loop) const {
   constexpr double kFadeUp = FocusMotion::kMaxOffset, kFadeBoth = 2.0 * kFadeUp;
@@ -206,7 +207,7 @@ double PathEmitter::Impl::cost(const Focus& f, const LiftedPath& path, std::int6
   return f.motion.reaches(path, place, in_step) ? place.distance : kFadeBoth;
 }
 
-/// Gives each focal point its part in the newest plan.
+/// Assigns each focal point its part in the newest plan.
 void PathEmitter::Impl::assign(std::int64_t sample) {
   const std::size_t paths = std::min(plan().paths.size(), foci().size());
   stats.dropped_paths += static_cast<std::int64_t>(plan().paths.size() - paths);
@@ -247,7 +248,7 @@ void PathEmitter::Impl::cut_lap(const Focus& f) {
   if (!f.motion.at_rest() && !f.motion.lap_ended()) ++stats.laps_cut;
 }
 
-/// Goes over to the next path by moving; false if that is too far. @pre next is a path; ready(f).
+/// Switches to the next path by moving; false if it is too far away. @pre next is a path; ready(f).
 bool PathEmitter::Impl::join(Focus& f, std::int64_t sample) {
   const LiftedPath& path = plan().paths[static_cast<std::size_t>(f.next)];
   const InStep in_step = part(path, clock.runs() ? clock.last() : 0);
@@ -259,8 +260,8 @@ bool PathEmitter::Impl::join(Focus& f, std::int64_t sample) {
   return true;
 }
 
-/// Returns where a silent focal point begins a path: at its first point, as planned, unless others
-/// run already; then where it keeps away from them.
+/// Returns where a silent focal point begins a path: at its first point, as planned, or, if other
+/// focal points are running already, at the place that keeps it away from them.
 PathPlace PathEmitter::Impl::start_place(const Focus& f, const LiftedPath& path) const {
   boost::container::static_vector<const FocusMotion*, kMaxPaths> others;
   bool any_runs = false;
@@ -275,7 +276,7 @@ PathPlace PathEmitter::Impl::start_place(const Focus& f, const LiftedPath& path)
                      std::span<const FocusMotion* const>(others.data(), others.size()));
 }
 
-/// Goes over to the next path, or to rest, in silence.
+/// Jumps to the next path, or to rest, while silent.
 void PathEmitter::Impl::jump(Focus& f, std::int64_t sample) {
   f.has_next = false;
   if (f.next == kNoPath) {
@@ -303,7 +304,8 @@ void PathEmitter::Impl::adopt(Focus& f, std::int64_t sample) {
   if (!f.motion.at_rest()) ++stats.laps_started;
 }
 
-/// Starts to go over to the next path or to rest: by moving if the path is near, else by fading.
+/// Starts the transition to the next path or to rest: by moving if the path is near, else by
+/// fading.
 void PathEmitter::Impl::take_over(Focus& f, Drive& d, std::int64_t sample) {
   if (f.next != kNoPath && join(f, sample)) return;
   f.state = State::Leaving;
@@ -321,7 +323,7 @@ void PathEmitter::Impl::move(Focus& f, Drive& d, std::int64_t sample) {
     ++stats.laps_started;
   }
 
-  // if silent, on to the next path; this sample stays silent, so that nobody feels the jump
+  // if silent, jump to the next path; this sample stays silent, so that the jump is not felt
   if (f.state != State::Following && d.intensity <= 0.0) {
     if (f.has_next && ready(f)) jump(f, sample);
   }
@@ -351,7 +353,7 @@ void PathEmitter::Impl::count(Focus& f, const Drive& d, std::int64_t sample) {
                       sample);
   }
 
-  // the largest step while it sounds
+  // the largest step while audible
   FocusSample now;
   now.p_D = f.motion.position().cast<float>();
   now.intensity = static_cast<float>(d.intensity);

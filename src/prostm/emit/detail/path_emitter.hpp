@@ -14,16 +14,16 @@ namespace prostm {
 /// 1/40 per sample, intensities lie in [0, 1], Σ intensity² is within the limit, and every number
 /// is finite.
 ///
-/// A new plan's paths are matched to the focal points, (E5). Each focal point goes over at the end
-/// of its lap (at the next block with switch_at = "now", or when a lap takes over 1 s): by moving,
+/// A new plan's paths are matched to the focal points, (E5). Each focal point switches at the end
+/// of its lap (at the next block with switch_at = "now", or if a lap takes over 1 s): by moving,
 /// if the new path is near, (E3), else by fading down, jumping while silent, and fading up. Focal
-/// points that all start from silence begin at their paths' first points; one that joins running
-/// ones begins where it keeps away from them, (E6). A focal point that no path needs fades down and
-/// rests where it is.
+/// points that all start from silence begin at their paths' first points; one that starts while
+/// others are running begins where it keeps away from them, (E6). A focal point without a path
+/// fades down and rests where it is.
 ///
 /// Plans in step share the clock of one loop, (E10): a new plan takes over for all focal points at
-/// the end of the loop (at the next block with switch_at = "now"), and each is at the place where
-/// the clock says, (E11), wherever it comes from. docs/design/emission.md.
+/// the end of the loop (at the next block with switch_at = "now"), and each joins its path at the
+/// place that corresponds to the clock, (E11). docs/design/emission.md.
 class PathEmitter final : public Emitter {
  public:
   /// @param sample_rate of the device [Hz].  @param max_speed above 0, at most kMaxFocusSpeed

@@ -24,7 +24,7 @@ PathPlace place_apart(const LiftedPath& path, const FocusMotion& motion,
                       std::span<const FocusMotion* const> others) {
   const std::int64_t lap = motion.lap_samples(path);
   if (lap == 1) return first_place(path);  // it rests there
-  // twice round, so that the places of all starts at one moment lie in a row
+  // two laps, so that the places of all starts at one moment are contiguous
   std::array<std::array<float, 2 * kPlaces>, 3> round;
   for (std::size_t i = 0; i < 2 * kPlaces; ++i) {
     const double share = static_cast<double>(i % kPlaces) / static_cast<double>(kPlaces);

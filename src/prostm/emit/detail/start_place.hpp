@@ -11,8 +11,8 @@ namespace prostm {
 PathPlace first_place(const LiftedPath& path);
 
 /// Returns the place on the path, of 32 at equal arcs, from which a focal point keeps the largest
-/// distance (E6) from `others` over two laps, if they go on as they do; the first point if it would
-/// rest on the path.
+/// distance (E6) from `others` over two laps, if those stay on their paths; the first point if it
+/// would be at rest on the path.
 /// @param motion motion of the focal point, for its lap on the path.
 /// @pre the path has a point and is measured.
 PathPlace place_apart(const LiftedPath& path, const FocusMotion& motion,

@@ -9,9 +9,9 @@
 
 namespace prostm {
 
-/// Follows each plan from the first focal point that takes it over to when 90 % of its path length
-/// has been drawn, or until nothing follows it any more, and then reports it. Device's thread,
-/// except for next().
+/// Tracks each plan from the moment when the first focal point takes it over until 90 % of its path
+/// length has been drawn, or no focal point follows it any more, and then reports it. Device's
+/// thread, except for next().
 class TakeOverLog {
  public:
   using Entry = int;  ///< index of an open plan
@@ -25,7 +25,7 @@ class TakeOverLog {
   Entry follow(std::int64_t sample) noexcept;
   /// Records that a focal point has drawn this length of the plan [m], no part twice.
   void draw(Entry entry, double length, std::int64_t sample) noexcept;
-  /// Records that a focal point stops following.
+  /// Records that a focal point stops following the plan.
   void leave(Entry entry) noexcept;
 
   /// Takes the oldest unread report; false if all are read. Reader's thread.

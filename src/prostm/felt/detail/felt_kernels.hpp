@@ -1,5 +1,5 @@
 #pragma once
-/// The products that take most of the time of a felt loss. Private to felt.
+/// The products that take most of the computing time of a felt loss. Private to felt.
 
 #include <array>
 #include <cstddef>
@@ -12,38 +12,38 @@
 
 namespace prostm {
 
-/// Effect of a source of amplitude 1 on a cell, in all parts; or the same per mm of distance.
+/// Effect of a source of amplitude 1 on a cell, in all parts; or its derivative per mm of distance.
 template <class Real>
 struct alignas(64) FeltPair {
   std::array<Real, kFeltParts> part;
 };
 
-/// The same as whole numbers: pairs are read again and again, so their bytes are what takes time.
-/// Larger ones than kMostFixed become that.
+/// A pair in 16-bit fixed point: pairs are read many times, so memory traffic dominates. Values are
+/// clamped to kMostFixed.
 struct alignas(32) FeltFixed {
   std::array<std::int16_t, kFeltParts> part;
 };
 inline constexpr double kMostFixed = 32767.0;
 
-/// A pair as it is kept.
+/// The stored form of a pair.
 template <class Real>
 using FeltKept = std::conditional_t<std::is_same_v<Real, float>, FeltFixed, FeltPair<Real>>;
 
-/// The spectrum of a source as it multiplies a table's row: the real parts twice, and the imaginary
-/// parts, first with a minus sign.
+/// The spectrum of a source, laid out for its product with a row of the table: the real parts
+/// twice, and the imaginary parts twice, first negated.
 template <class Real>
 struct alignas(64) FeltTurn {
   std::array<Real, kFeltParts> straight, crossed;
 };
 
-/// How far an output of convolve() may go beyond its size, and what it reads beyond that.
+/// Number of values beyond its size that convolve() may write, and beyond that, read.
 inline constexpr std::size_t kConvolveMargin = kFeltParts;
 
-/// Kept pairs lie row by row: a row is a cell on a skin.
+/// Stored pairs are in row-major order; a row is a cell on a skin.
 template <class Real>
 struct FeltKernels {
-  /// Fills a row for each skin of the cell at (x, y); and their slopes, if that is not null.
-  /// @param turns of the sources.
+  /// Fills the rows of the cell at (x, y), one per skin, and their slopes if `slopes` is not null.
+  /// @param turns spectra of the sources.
   void (*fill)(std::span<const FocusResponse<Real>> skins, Real x, Real y,
                std::span<const FeltSource<Real>> sources, const FeltTurn<Real>* turns,
                FeltKept<Real>* pairs, FeltKept<Real>* slopes);
@@ -65,7 +65,7 @@ FeltKernels<double> plain_felt_kernels();
 /// Returns the vector kernels for this processor.
 FeltKernels<float> fast_felt_kernels();
 
-/// Returns those of this precision.
+/// Returns the kernels for this precision.
 template <class Real>
 FeltKernels<Real> felt_kernels() {
   if constexpr (std::is_same_v<Real, float>) {

@@ -12,7 +12,7 @@
 
 #include <algorithm>
 
-// All parts of a pair are one to four vectors, and stay in registers while sources go by.
+// All parts of a pair fit in one to four vectors, which stay in registers in the loop over sources.
 HWY_BEFORE_NAMESPACE();
 namespace prostm {
 namespace HWY_NAMESPACE {
@@ -30,7 +30,7 @@ using Source = FeltSource<float>;
 
 constexpr std::size_t kLanes = hn::MaxLanes(D());
 constexpr std::size_t kVectors = kFeltParts / kLanes;
-// sources whose places in the table are found at once; rows of pairs that are added up at once
+// sources looked up in the table at once; rows of pairs summed at once
 constexpr std::size_t kChunk = kFeltParts, kRows = kVectors == 1 ? 4 : 2;
 
 HWY_INLINE V Load(const std::array<float, kFeltParts>& parts, std::size_t v) {
@@ -40,10 +40,10 @@ HWY_INLINE V Load(const Fixed& pair, std::size_t v) {
   return hn::ConvertTo(D(), hn::PromoteTo(DI(), hn::Load(DS(), pair.part.data() + v * kLanes)));
 }
 
-/// Where sources are in a table: rows low and low + 1, and what each entry of these counts for the
+/// Positions of sources in a table: rows low and low + 1, and the weights of their entries for the
 /// value and for its slope.
 struct alignas(64) Places {
-  std::array<float, kChunk> distance;  // squared at first, in the end that of row low
+  std::array<float, kChunk> distance;  // first squared, finally the distance of row low
   std::array<std::array<float, kChunk>, 4> value, slope;
   std::array<std::size_t, kChunk> low;
 
@@ -81,11 +81,11 @@ struct alignas(64) Places {
   }
 };
 
-/// Returns imaginary parts where real ones are in part v of a row, and the other way round.
+/// Returns vector v of a row with real and imaginary parts swapped.
 template <std::size_t kCount>
 HWY_INLINE V Crossed(const V (&row)[kCount], std::size_t v) {
   if constexpr (kCount == 1) {
-    // found by its arguments, since not all targets have it
+    // found by argument-dependent lookup, since not all targets have it
     return ConcatLowerUpper(D(), row[v], row[v]);
   } else {
     return row[(v + kCount / 2) % kCount];
@@ -130,7 +130,7 @@ void Fill(std::span<const Response> skins, float x, float y, std::span<const Sou
   }
 }
 
-/// Sums up so many rows at once, since one sum would have to wait for itself.
+/// Sums kCount rows at once: independent sums, which hide the latency of the additions.
 template <std::size_t kCount>
 HWY_INLINE void SumRows(const Fixed* pairs, std::span<const float> amplitude, Pair* out) {
   const D d;
@@ -151,7 +151,7 @@ HWY_INLINE void SumRows(const Fixed* pairs, std::span<const float> amplitude, Pa
   }
 }
 
-/// Adds so many rows at once: each sum is loaded and stored once for all of them.
+/// Adds kCount rows at once: each sum is loaded and stored once for all of them.
 template <std::size_t kCount>
 HWY_INLINE void AddRows(const Fixed* pairs, const Pair* pull, std::span<Pair> sums) {
   const D d;

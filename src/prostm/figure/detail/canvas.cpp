@@ -26,7 +26,7 @@ bool ends_in(const std::string& path, std::string_view ending) {
 
 void check_ending(const std::string& path) {
   if (!ends_in(path, ".png") && !ends_in(path, ".svg") && !ends_in(path, ".pdf")) {
-    throw InputError(path + " names no kind of figure; it must end in .png, .svg or .pdf");
+    throw InputError(path + " is not a known kind of figure; it must end in .png, .svg or .pdf");
   }
 }
 
@@ -40,7 +40,7 @@ void check_figure(const std::string& path) {
 namespace figure {
 namespace {
 
-constexpr double kPixelsPerPoint = 2.0;  // of PNG pages
+constexpr double kPixelsPerPoint = 2.0;  // resolution of PNG pages
 
 cairo_status_t append_bytes(void* closure, const unsigned char* data, unsigned int length) {
   auto& bytes = *static_cast<std::string*>(closure);
@@ -63,8 +63,8 @@ std::uint32_t pixel_of(const Colour& colour) {
   return alpha << 24 | channel(colour.r) << 16 | channel(colour.g) << 8 | channel(colour.b);
 }
 
-/// Pixels of a side of `cells` cells: cells of several pixels stay sharp when stretched, and a side
-/// has at most 2048. The fewer the cells the smaller the picture, which is most of a vector file.
+/// Pixels along a side of `cells` cells. Cells of several pixels stay sharp when scaled; a side has
+/// at most 2048 pixels. Few cells give a small picture, which dominates the size of a vector file.
 int picture_side(int cells) {
   if (cells > 512) return std::min(cells, 2048);
   return cells * ((cells > 128 ? 1024 : 512) / cells);
@@ -102,7 +102,7 @@ Canvas::Canvas(const std::string& path, double width, double height)
   } else if (ends_in(path, ".pdf")) {
     impl_->surface.reset(
         cairo_pdf_surface_create_for_stream(append_bytes, &impl_->bytes, width, height));
-    // the same picture is the same file, whenever it is drawn
+    // no date, so that equal pictures give equal files
     cairo_pdf_surface_set_metadata(impl_->surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
   } else {
     impl_->surface.reset(cairo_image_surface_create(CAIRO_FORMAT_ARGB32,
@@ -179,7 +179,7 @@ std::string Canvas::shortened(const std::string& text, double width, const TextS
   std::string begin = text;
   while (!begin.empty() && text_width(begin + "…", style) > width) {
     const auto inside = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
-    while (inside(begin.back())) begin.pop_back();  // the rest of a character of several bytes
+    while (inside(begin.back())) begin.pop_back();  // the rest of a multi-byte character
     begin.pop_back();
   }
   return begin + "…";
@@ -187,7 +187,7 @@ std::string Canvas::shortened(const std::string& text, double width, const TextS
 
 void Canvas::cells(const Box& box, int rows, int cols,
                    const std::function<Colour(int row, int col)>& colour) {
-  // a picture of the cells, so that no seams show between them
+  // one image for all cells, to avoid visible seams between them
   const int width = picture_side(cols), height = picture_side(rows);
   const Surface picture(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
   cairo_surface_flush(picture.get());

@@ -1,5 +1,5 @@
 #pragma once
-/// A page to draw on, PNG, SVG or PDF. Private to figure. Coordinates are points, y down.
+/// A page to draw on, as PNG, SVG or PDF. Private to figure. Coordinates are in points, y down.
 
 #include <cstdint>
 #include <functional>
@@ -19,7 +19,7 @@ struct TextStyle {
   Colour colour = kInk;
   Align align = Align::Left;
   bool bold = false;
-  bool upwards = false;  ///< turned by 90°, read from below
+  bool upwards = false;  ///< rotated by 90°, reading upwards
 };
 
 struct Box {
@@ -28,7 +28,7 @@ struct Box {
 
 class Canvas {
  public:
-  /// @throws InputError unless `path` ends in .png, .svg or .pdf. PNG pages have two pixels a
+  /// @throws InputError unless `path` ends in .png, .svg or .pdf. PNG pages have two pixels per
   /// point.
   Canvas(const std::string& path, double width, double height);
   ~Canvas();
@@ -38,20 +38,20 @@ class Canvas {
   void line(std::span<const Vec2> points, bool closed, const Colour& colour, double line_width);
   void disc(const Vec2& centre, double radius, const Colour& colour);
   void triangle(const Vec2& a, const Vec2& b, const Vec2& c, const Colour& colour);
-  /// `at` is the base line's start, middle or end.
+  /// `at` is the start, middle or end of the baseline.
   void text(const Vec2& at, const std::string& text, const TextStyle& style);
   double text_width(const std::string& text, const TextStyle& style);
-  /// The text, or its beginning and "…" where it would be wider.
+  /// The text, or its beginning and "…" if it would be wider than `width`.
   std::string shortened(const std::string& text, double width, const TextStyle& style);
-  /// Stretches a picture of cols × rows cells over the box, row 0 at the bottom; sharp cells, of
-  /// any number.
+  /// Fills the box with cols × rows sharp-edged cells, row 0 at the bottom; any number of cells is
+  /// allowed.
   void cells(const Box& box, int rows, int cols,
              const std::function<Colour(int row, int col)>& colour);
-  /// Everything drawn until unclip() is cut at the box.
+  /// Clips everything drawn until unclip() to the box.
   void clip(const Box& box);
   void unclip();
 
-  /// Writes the file: whole, or not at all. @throws InputError when it cannot be written.
+  /// Writes the file completely, or not at all. @throws InputError when it cannot be written.
   void save();
 
  private:

@@ -41,7 +41,7 @@ Colour field_colour(double t) {
   const double lightness = 0.24 + 0.70 * t;
   const double hue = (305.0 - 203.0 * t) * kPi / 180.0;
 
-  // the most chroma up to 0.16 that is still a colour of the screen
+  // the largest chroma up to 0.16 within sRGB
   double chroma = 0.16;
   std::array<double, 3> rgb{};
   for (;; chroma -= 0.002) {

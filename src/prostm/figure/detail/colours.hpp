@@ -18,13 +18,13 @@ inline constexpr Colour kWarning{0.80, 0.20, 0.10};
 
 Colour mix(const Colour& from, const Colour& to, double share);
 
-/// The colour map of all fields: lightness grows evenly from dark violet to yellow, so that equal
-/// steps of the value look equal, also in grey. Built in Oklab (B. Ottosson, "A perceptual color
-/// space for image processing", 2020) with L = 0.24 + 0.70 t, hue 305° to 102°, and as much chroma
-/// as sRGB holds along the way.
+/// The colour map of all fields: lightness increases uniformly from dark violet to yellow, so that
+/// equal steps in value look equal, also in greyscale. Built in Oklab (B. Ottosson, "A perceptual
+/// color space for image processing", 2020) with L = 0.24 + 0.70 t, hue 305° to 102°, and the
+/// largest chroma within sRGB along the way.
 Colour field_colour(double t);
 
-/// The colour of path i: told apart by people of any colour vision (M. Okabe and K. Ito, "Color
+/// The colour of path i, distinguishable with any colour vision (M. Okabe and K. Ito, "Color
 /// universal design", 2008).
 Colour path_colour(std::size_t i);
 

@@ -14,7 +14,7 @@ template <class Tick>
 void for_each_tick(double low, double high, double length, const Tick& tick) {
   const double step = tick_step(1e3 * (high - low), std::clamp(length / 55.0, 1.0, 8.0));
   const double first = std::ceil(1e3 * low / step), last = std::floor(1e3 * high / step);
-  constexpr int kMostTicks = 20;  // also where rounding has eaten the range
+  constexpr int kMostTicks = 20;  // a bound, in case rounding makes the range vanish
   for (int i = 0; i < kMostTicks && first + i <= last; ++i) tick((first + i) * step);
 }
 
@@ -91,7 +91,7 @@ void Panel::closed_line(std::span<const Vec2> points, const Colour& colour, doub
   canvas_.clip(box_);
   canvas_.line(page, true, colour, line_width);
 
-  // an arrow head in the middle of the longest segment
+  // an arrowhead in the middle of the longest segment
   std::size_t longest = 0;
   double length = 0.0;
   for (std::size_t i = 0; i < page.size(); ++i) {

@@ -74,8 +74,8 @@ Placement centre_placement(int n) {
 }
 
 float trilinear(const PaddedGrid& grid, const float* field, float x, float y, float z) {
-  // at the upper end the second corner has weight 0 and may lie beyond the array: step back where
-  // it would
+  // at the upper end the second corner has weight 0 and may lie beyond the array: step back if it
+  // does
   const auto base = [](float v) { return std::floor(v); };
   const auto top = static_cast<float>(grid.n);
   const float bx = base(x), by = std::min(base(y), top - 1.0F), bz = std::min(base(z), top - 1.0F);

@@ -1,6 +1,6 @@
 #pragma once
-/// Semi-Lagrangian advection: one backtrace per cell, shared by all fields; kernels written plain
-/// and with vectors.
+/// Semi-Lagrangian advection: one backtrace per cell, shared by all fields; scalar and vector
+/// kernels.
 
 #include <vector>
 
@@ -17,16 +17,16 @@ struct Placement {
 };
 
 Placement face_placement(int n, int axis);
-/// For cell centres whose halo holds the values outside: smoke.
+/// Placement of cell-centred fields whose halo holds the values outside: smoke.
 Placement centre_placement(int n);
 
-/// Least and greatest −d of some cells, per axis, and one value more: a vector each.
+/// Least and greatest −d of some cells, per axis; a fourth value makes each a whole vector.
 struct ShiftRange {
   alignas(16) float low[4] = {0, 0, 0, 0};
   alignas(16) float high[4] = {0, 0, 0, 0};
 };
 
-/// Fewer make more blocks, more make their boxes of shifted rows larger.
+/// Rows of a block: fewer make more blocks, more make larger boxes of shifted rows.
 inline constexpr int kBlockRows = 4;
 
 /// Displacements d of the particles that arrive at the cells, and their ranges in blocks of
@@ -50,8 +50,8 @@ struct AdvectionKernels {
 };
 
 const AdvectionKernels& scalar_advection_kernels();
-/// The vector kernels for this processor; the plain ones where Highway knows only its one-lane
-/// fallback.
+/// Returns the vector kernels for this processor, or the scalar ones if Highway has only its
+/// one-lane fallback.
 const AdvectionKernels& fast_advection_kernels();
 
 /// Returns the trilinear value at (x, y, z), in the indices of the array. @pre lower ≤ position ≤

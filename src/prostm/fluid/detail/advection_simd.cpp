@@ -1,6 +1,6 @@
 #include "prostm/fluid/detail/advection.hpp"
 
-// only vectors whose length is known at compile time: hats are structs of them
+// only vectors whose length is known at compile time, since hats are structs of vectors
 #ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #endif
@@ -26,7 +26,7 @@ using V = hn::Vec<D>;
 constexpr int kMaxLanes = 16;
 constexpr int kMaxTaps = 96;  // with more shifted rows, lane by lane is cheaper
 
-/// A field of places, the displacements there, and how much of d[c − back] + d[c] they are.
+/// The placement of a field, and its displacements: factor · (d[c − back] + d[c]).
 struct Particles {
   const PaddedGrid& grid;
   const Placement& place;
@@ -36,7 +36,7 @@ struct Particles {
   Index row = grid.row(), plane = grid.plane();
 };
 
-/// A few rows of one vector, from which lane shifts −d go to whole shifts `first` to `last`.
+/// A few rows of one vector each, whose shifts −d lie between the whole shifts `first` and `last`.
 struct Block {
   int i = 0, j = 0, k = 0, rows = 0;
   Index number = 0;  // in its row
@@ -201,7 +201,7 @@ HWY_INLINE void sum_few(const Particles& from, const Block& block, const float* 
   }
 }
 
-/// Does the same with any number of shifts.
+/// The same with any number of shifts.
 template <int kFields>
 void sum_many(const Particles& from, const Block& block, const float* const* fields,
               float* const* out) {
@@ -225,7 +225,7 @@ void sum_many(const Particles& from, const Block& block, const float* const* fie
   }
 }
 
-/// Does the same lane by lane, where the flow shears so much that the box would be large.
+/// The same lane by lane, for a flow that shears so much that the box would be large.
 template <int kFields>
 void sum_lanes(const Particles& from, const Block& block, const float* const* fields,
                float* const* out) {
@@ -265,7 +265,7 @@ HWY_INLINE void over_blocks(const PaddedGrid& grid, int rows, int k0, int k1, co
     for (block.j = 0; block.j < rows; block.j += kBlockRows) {
       block.rows = std::min(kBlockRows, rows - block.j);
       for (block.number = 0; block.number * step < grid.n; ++block.number) {
-        // the last block overlaps the one before where rows are not of whole vectors
+        // the last block overlaps the one before if a row is not a whole number of vectors
         block.i = std::min(static_cast<int>(block.number) * step, grid.n - step);
         block.at = grid.index(block.i, block.j, block.k);
         f(block);
@@ -312,7 +312,7 @@ void Sample(const PaddedGrid& grid, const Placement& place, const Displacements&
     interpolate<1>(from, block, &in, &out);
   });
   if (place.axis != 0) return;
-  // the last face of each row stands alone
+  // the last face of each row is computed on its own
   for (int k = k0; k < k1; ++k) {
     for (int j = 0; j < grid.n; ++j) {
       const Index c = grid.index(grid.n, j, k);

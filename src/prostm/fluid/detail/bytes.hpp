@@ -6,7 +6,7 @@
 
 namespace prostm::fluid {
 
-/// Calls f(i) for the bytes i in [begin, end) of a row that are `value` when their turn comes.
+/// Calls f(i) for the bytes i in [begin, end) of a row that equal `value` when they are visited.
 template <class F>
 void for_bytes(const std::uint8_t* row, int begin, int end, std::uint8_t value, F&& f) {
   for (int i = begin; i < end; ++i) {

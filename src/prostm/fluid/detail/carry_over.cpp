@@ -5,7 +5,7 @@
 namespace prostm::fluid {
 namespace {
 
-/// The same along one row of `count` values, which may be one and the same.
+/// The same along one row of `count` values; `to` may be the row `from`.
 void carry_row(const float* from, int by, int count, float* to) {
   const float first = from[0], last = from[count - 1];
   const int begin = std::clamp(-by, 0, count), end = std::clamp(count - by, 0, count);

@@ -11,7 +11,7 @@ Index away(const Index stride[3], int neighbour) {
   return neighbour % 2 == 0 ? -stride[neighbour / 2] : stride[neighbour / 2];
 }
 
-/// A face that takes the mean of its neighbours of which `test` holds.
+/// A face that gets the mean of its neighbours for which `test` holds.
 template <class Test>
 ShutFace shut_face(const Index stride[3], Index at, const Test& test) {
   ShutFace face{at, 0};

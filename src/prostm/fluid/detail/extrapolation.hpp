@@ -1,5 +1,5 @@
 #pragma once
-/// The fluid's velocity carried a little way into the hands.
+/// Extrapolates the fluid's velocity a short way into the hands.
 
 #include <cstdint>
 #include <vector>
@@ -9,20 +9,20 @@
 
 namespace prostm::fluid {
 
-/// A shut face that takes the mean of those of its six neighbours whose bits are set.
+/// A shut face that gets the mean of those of its six neighbours whose bits are set.
 struct ShutFace {
   Index at;
   std::uint8_t from;
 };
 
-/// The shut faces of one axis in two layers: those beside faces that the fluid passes, and those
-/// beside the first.
+/// The shut faces of one axis in two layers: those next to faces that the fluid passes, and those
+/// next to the first layer.
 struct ShutFaces {
   explicit ShutFaces(const PaddedGrid& grid) : layer(grid), stride{1, grid.row(), grid.plane()} {
     for (auto& faces : layers) faces.reserve(static_cast<std::size_t>(grid.size()));
   }
   std::vector<ShutFace> layers[2];
-  std::vector<Index> deep;          ///< scratch: neither
+  std::vector<Index> deep;          ///< scratch: faces in neither layer
   PaddedField<std::uint8_t> layer;  ///< scratch: 1 for faces of the first layer
   Index stride[3];
 };

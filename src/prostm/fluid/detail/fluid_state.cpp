@@ -106,7 +106,7 @@ void Fluid::State::prepare(double step_dt) {
   stats = {};
   usable = std::isfinite(dt) && dt > 0.0;
   for (int sub = 1; sub <= settings.substeps && usable; ++sub) {
-    // what acts over the step begins with what acts early in its first part
+    // the mean pressure over the step starts with the early share of the first sub-step
     keep = sub > 1 ? 1.0F : 0.0F;
     advect();
     add_forces();
@@ -135,8 +135,8 @@ bool Fluid::State::is_split() const {
   return settings.substeps > 1 || settings.theta < 1.0;
 }
 
-/// The present pressure's weight in the mean of those that act over the step, where it acts in this
-/// share of a sub-step.
+/// Returns the weight of a pressure that acts for this share of a sub-step, in the mean over the
+/// step.
 float Fluid::State::weight(double share) const {
   return static_cast<float>(share / settings.substeps);
 }
@@ -151,7 +151,7 @@ void Fluid::State::press_early(int k0, int k1) {
   blend(weight(early), pressure + c, keep, acting.data() + c, (k1 - k0) * padded.plane());
 }
 
-/// Ends a sub-step among the hands of the step before.
+/// Finishes a sub-step with the hands of the previous step.
 void Fluid::State::finish_substep() {
   solve();
   over_planes([&](int k0, int k1) {
@@ -212,7 +212,7 @@ void Fluid::State::advect() {
   });
   if (early > 0.0) extend_into_hands();
   surroundings.set_smoke_halo(smoke);
-  // the values that they bring
+  // the advected values
   over_planes([&](int k0, int k1) {
     for (int axis = 0; axis < 3; ++axis) {
       const int faces = axis == 2 && k1 == n ? n + 1 : k1;
@@ -369,11 +369,11 @@ void Fluid::State::solve() {
     case PressureMethod::Jacobi:
       solver.jacobi(settings.jacobi_sweeps, settings.jacobi_warm);
   }
-  // what acted early has no error here: it is known
+  // the early share is known, so it has no error
   stats.pressure_error = (1.0 - early) * solver.convergence().error();
 }
 
-/// The largest of the planes' `largest`.
+/// Maximum of `largest` over the planes.
 std::int32_t Fluid::State::largest_over_planes() const {
   std::int32_t largest = 0;
   for (const PlaneSums& sum : sums) largest = std::max(largest, sum.largest);

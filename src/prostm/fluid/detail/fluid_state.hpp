@@ -74,9 +74,9 @@ struct Fluid::State {
   // the present step
   double dt = 0.0;                 // of a sub-step [s]
   double early = 0.0;              // share of the pressure that acts early
-  float keep = 0.0F;               // of what acts over the step already
+  float keep = 0.0F;               // factor on `acting` before a pressure is added: 0 or 1
   double fastest = 0.0;            // of the last sub-step [m/s]
-  bool usable = false;             // false: the state is to be reset
+  bool usable = false;             // false: the state must be reset
   double divergence_before = 0.0;  // Σ of squares, before the projection
   FluidStats stats;
 

@@ -26,7 +26,7 @@ float open_fraction(float a, float b, float c) {
   const int positive = (a > 0.0F) + (b > 0.0F) + (c > 0.0F);
   if (positive == 3) return 1.0F;
   if (positive == 0) return 0.0F;
-  // the corner of the lone sign comes first: its own small triangle has the area a²/((a − b)(a −
+  // the corner whose sign differs comes first: its small triangle has the area a²/((a − b)(a −
   // c))
   const bool lone_positive = positive == 1;
   if ((b > 0.0F) == lone_positive) {
@@ -189,7 +189,7 @@ void Obstacle::cut(const HandRaster& raster, PressureLevel& level, int k) {
 void Obstacle::classify(const PressureLevel& level, int k) {
   const Index row = grid_.row(), plane = grid_.plane();
   for (int j = box_.lower[1]; j < box_.upper[1]; ++j) {
-    // cells beside the span run to the box's sides, which the outside reaches
+    // cells outside the span extend to the box's sides, which are connected to the outside
     const RowSpan span = cells_of(level, j, k);
     for (int i = span.begin; i < span.end; ++i) {
       const Index c = grid_.index(i, j, k);
@@ -207,7 +207,7 @@ RowSpan Obstacle::cells_of(const PressureLevel& level, int j, int k) const {
           std::min(span.end, static_cast<std::int16_t>(box_.upper[0]))};
 }
 
-/// Calls f(c) for the cells that are in a state when their turn comes.
+/// Calls f(c) for the cells that are in a state when they are visited.
 template <class F>
 void Obstacle::for_cells(const PressureLevel& level, CellState state, F&& f) {
   for (int k = box_.lower[2]; k < box_.upper[2]; ++k) {
@@ -277,7 +277,8 @@ void Obstacle::flood(const PressureLevel& level, Index seed) {
   }
 }
 
-/// Reaches most cells of plane k from both ends of their rows, which leaves little to flood.
+/// Marks most cells of plane k as reached from both ends of their rows, which leaves little to
+/// flood.
 void Obstacle::reach_along_rows(const PressureLevel& level, int k) {
   for (int j = box_.lower[1]; j < box_.upper[1]; ++j) {
     const RowSpan span = cells_of(level, j, k);

@@ -19,7 +19,7 @@ std::align_val_t alignment(std::size_t bytes) {
   return std::align_val_t{is_large(bytes) ? kHugePage : 64};
 }
 
-/// Whole pages if it is large.
+/// Rounds a large size up to whole pages.
 std::size_t rounded(std::size_t bytes) {
   return is_large(bytes) ? (bytes + kHugePage - 1) / kHugePage * kHugePage : bytes;
 }
@@ -29,7 +29,7 @@ std::size_t rounded(std::size_t bytes) {
 void* allocate_field(std::size_t bytes) {
   void* memory = ::operator new(rounded(bytes), alignment(bytes));
 #if defined(__linux__)
-  // where the kernel does not know huge pages, the field has small ones
+  // a kernel without huge pages uses small ones
   if (is_large(bytes)) madvise(memory, rounded(bytes), MADV_HUGEPAGE);
 #endif
   return memory;

@@ -30,9 +30,9 @@ struct PaddedGrid {
   Index size() const { return 2 * kGuardRows * row() + plane() * (n + 2); }
 };
 
-/// Memory for a field, aligned to 64 bytes at least. A large one is in pages of 2 MiB where the
-/// system has them: stencils walk over so many planes of so many fields that pages of 4 KiB cost 8
-/// % of a step in address translation. @throws std::bad_alloc.
+/// Allocates memory for a field, aligned to 64 bytes at least. A large field gets pages of 2 MiB if
+/// the system has them: stencils access so many planes of so many fields that with pages of 4 KiB
+/// address translation costs 8 % of a step. @throws std::bad_alloc.
 void* allocate_field(std::size_t bytes);
 void free_field(void* memory, std::size_t bytes);
 

@@ -14,7 +14,7 @@ void list(Settings& s, Visitor& v) {
   v.field({"width", "m", 0.05, 5,
            "edge of the box, which stands on the array unless [box] follow moves it"},
           s.width);
-  v.field({"substeps", "", 1, 16, "steps of the fluid in a step of the world"}, s.substeps);
+  v.field({"substeps", "", 1, 16, "fluid steps per world step"}, s.substeps);
   v.field({"theta", "", 0.6, 1, "weight of the pressure at the end of a path; 1: implicit"},
           s.theta);
   v.field({.name = "solver", .help = "solver of the pressure"}, s.solver);

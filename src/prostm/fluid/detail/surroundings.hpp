@@ -11,21 +11,21 @@
 
 namespace prostm::fluid {
 
-/// Sets `to` to an inflow at `factor` times its speed. All that has a speed goes with it, so that
-/// the flow is similar: lengths stay, times shrink by the factor.
+/// Sets `to` to an inflow at `factor` times its speed. Everything with a speed is scaled, so that
+/// the flow stays similar: lengths are unchanged, and times shrink by the factor.
 void blow(const SmokeInflow& inflow, double factor, SmokeInflow& to);
 SmokeInflow blown(const SmokeInflow& inflow, double factor);
 
-/// The values that it sets in the fluid's fields hold for one step.
+/// Boundary conditions of the box. The values that it sets in the fluid's fields hold for one step.
 class Surroundings {
  public:
   /// @throws std::invalid_argument for an inflow out of bounds.
   Surroundings(const GridShape& grid, const SmokeInflow& inflow);
 
-  /// Blows another way from now on.
+  /// Replaces the inflow.
   void set_inflow(const SmokeInflow& inflow);
 
-  /// The box is elsewhere now.
+  /// Adapts to a box at another place.
   void place(const GridShape& grid, const SmokeInflow& inflow);
 
   /// Holds the jets in the tube of (F14) for a step of dt [s], up to the height `ceiling` above the
@@ -35,12 +35,12 @@ class Surroundings {
   /// Sets the velocity of the floor's faces.
   void set_floor(Field& w) const;
   /// Sets the smoke that would flow in with the next step: fresh smoke through a jet, clean air
-  /// beside it through a vented floor; a solid floor repeats the smoke that lies on it. Beyond the
+  /// beside it through a vented floor; a solid floor repeats the smoke just above it. Beyond the
   /// open sides is clear air, which the halo holds from the start.
   void set_smoke_halo(Field& smoke) const;
-  /// Air that enters through an open side was at rest outside (F3a): the side's cells forget their
-  /// momentum where the flow is inward, and the projection alone drives it. Kept momentum would
-  /// feed itself and turn the whole box.
+  /// Removes the momentum of the cells at an open side where the flow is inward, since air that
+  /// enters was at rest outside (F3a); the projection alone drives it. Otherwise the momentum would
+  /// amplify itself and set the whole box rotating.
   void calm_inflow(WorkerPool& pool, Field velocity[3]) const;
 
  private:

@@ -25,7 +25,7 @@ HWY_INLINE float diffused(const Rows& rows, Index i, Index west, Index east, flo
   return rows.own[i] + share * (around - 6.0F * rows.own[i]);
 }
 
-/// Whole vectors, the last one with zeros in the row's padding, and then the ends of the row.
+/// Computes whole vectors, the last one with zeros in the row's padding, then the row's ends.
 HWY_INLINE void diffuse_row(const Rows& rows, Index count, float share, float* HWY_RESTRICT out) {
   const D d;
   const auto step = static_cast<Index>(hn::Lanes(d));

@@ -1,6 +1,6 @@
 #include "prostm/hand/detail/body_set.hpp"
 
-// only vectors whose length is known at compile time: points and answers are structs of them
+// only vectors whose length is known at compile time, since points and results are structs of them
 #ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #endif
@@ -10,7 +10,7 @@
 #include <hwy/highway.h>
 
 // A vector is a row of a cube's corners; every lane takes the same steps of (H9) and (H10). Where
-// the plain bodies branch to one of a cone's two spheres or its mantle, this computes the distance
+// the scalar code branches to one of a cone's two spheres or its mantle, this computes the distance
 // to the sphere at the clamped u. Both agree, since that distance is least at u.
 HWY_BEFORE_NAMESPACE();
 namespace prostm {
@@ -89,7 +89,7 @@ HWY_INLINE Answer ask(const PackedCone& cone, const Points& p) {
   return answer;
 }
 
-/// Takes the answer of an edge in the lanes where it is nearer.
+/// Takes the result of an edge in the lanes where the edge is nearer.
 template <bool kVelocity>
 HWY_INLINE void take(const PackedCone& edge, const Points& p, Answer& best) {
   const Answer answer = ask<kVelocity>(edge, p);
@@ -123,7 +123,7 @@ HWY_INLINE Answer ask(const PackedTriangle& triangle, const Points& p) {
   }
   const auto inside = hn::Ge(hn::Min(hn::Min(a, b), c), hn::Zero(d));
   if (hn::AllTrue(d, inside)) return face;
-  // an edge is a part of the body, so taking it in lanes that do not need it does no harm
+  // an edge is part of the body, so lanes that do not need it may take it as well
   const V weight[3] = {a, b, c};
   for (int e = 0; e < 3; ++e) {
     if (!hn::AllFalse(d, hn::Lt(weight[e], hn::Zero(d))))

@@ -1,5 +1,5 @@
 #pragma once
-/// The bodies of hands, and kernels (plain and with vectors) that query them for blocks of points.
+/// The bodies of hands, and kernels (scalar and vector) that query them for blocks of points.
 /// Private to hand.
 
 #include <boost/container/static_vector.hpp>
@@ -79,8 +79,8 @@ struct BodyKernels {
 
 /// Kernels that use the bodies' own distance() and query(), in double precision.
 const BodyKernels& scalar_body_kernels();
-/// The vector kernels for this processor, in single precision; the plain ones where Highway knows
-/// only its one-lane fallback.
+/// Returns the vector kernels for this processor, in single precision, or the scalar ones if
+/// Highway has only its one-lane fallback.
 const BodyKernels& fast_body_kernels();
 
 }  // namespace prostm

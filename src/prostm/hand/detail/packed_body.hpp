@@ -14,9 +14,9 @@ struct PackedCone {
   float length, growth, change[3];  ///< from a to b: distance, changes of radius and velocity
 };
 
-/// A SphereTriangle as (H10). Its two faces are mirror images in the plane of the centres. With d =
-/// p − a and y = |d·plane|, the face on p's side is at distance d·in_plane + height y − radius, and
-/// p projects onto it with the weights d·dual − shear y for b and for c.
+/// A SphereTriangle in the form of (H10). Its two faces are mirror images in the plane of the
+/// centres. With d = p − a and y = |d·plane|, the face on p's side is at distance d·in_plane +
+/// height y − radius, and p projects onto it with the weights d·dual − shear y for b and for c.
 struct PackedTriangle {
   float centre[3], radius, velocity[3];  ///< the sphere at a
   float plane[3], in_plane[3], height;

@@ -129,7 +129,7 @@ SphereTriangle::Foot SphereTriangle::foot(const Vec3& p) const noexcept {
 }
 
 unsigned SphereTriangle::candidate_edges(const Foot& foot) const noexcept {
-  // |p − q| − r(q) is convex over the plane, so the way from the constrained minimum to the free
+  // |p − q| − r(q) is convex over the plane, so the line from the constrained minimum to the free
   // one leaves the triangle through an edge whose weight is negative at the free one
   return (foot.b + foot.c > 1.0 ? 1U : 0U) | (foot.b < 0.0 ? 2U : 0U) | (foot.c < 0.0 ? 4U : 0U);
 }
@@ -173,8 +173,8 @@ SurfacePoint SphereTriangle::query(const Vec3& p) const noexcept {
 PackedTriangle SphereTriangle::packed(const Vec3& origin) const noexcept {
   PackedTriangle out{};
   for (std::size_t e = 0; e < 3; ++e) out.edge[e] = edges_[e].packed(origin);
-  // a point wrongly projected onto the face errs by the square of the slip over the radius. In a
-  // thinner triangle single precision slips more, and leaving the faces out slips less
+  // an error in the projection onto a face changes the distance by its square over the radius. In
+  // thinner triangles that error in single precision exceeds the error of omitting the faces
   const Vec3 e1 = b_.centre - a_.centre, e2 = c_.centre - a_.centre;
   constexpr double kThinnest = 1e-8;  // squared sine of the angle between two edges
   out.has_faces =

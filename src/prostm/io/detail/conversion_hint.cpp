@@ -7,7 +7,7 @@ namespace prostm {
 namespace {
 
 struct Conversion {
-  std::array<std::string_view, 5> endings;  // the rest is empty
+  std::array<std::string_view, 5> endings;  // unused entries are empty
   std::string_view hint;
 };
 

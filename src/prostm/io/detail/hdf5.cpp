@@ -23,8 +23,8 @@ Id text_type() {
   return type;
 }
 
-/// A text of fixed length: its padding is left out. Some programs leave no room for the NUL of a
-/// type that ends with one.
+/// Reads a text of fixed length, without its padding. Some programs leave no room for the NUL of a
+/// NUL-terminated type.
 std::string read_fixed(hid_t attribute, hid_t stored) {
   std::string text(H5Tget_size(stored), '\0');
   if (H5Aread(attribute, stored, text.data()) < 0) return {};
@@ -62,7 +62,7 @@ bool Id::close() {
 }
 
 Id open_to_read(const std::string& path, bool lock) {
-  // a file that is open in this process already opens again only with its own close degree
+  // a file that is already open in this process can be reopened only with the same close degree
   for (const H5F_close_degree_t degree : {H5F_CLOSE_DEFAULT, H5F_CLOSE_STRONG, H5F_CLOSE_SEMI}) {
     const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_fclose_degree(access.get(), degree);
@@ -97,7 +97,8 @@ Table::Table(hid_t group, const Column& column) : type_(column.type), size_{0} {
   H5Pset_shuffle(create.get());
   H5Pset_deflate(create.get(), 1);
 
-  // the cache holds one chunk, so that full chunks are deflated one by one and not all at a flush
+  // the cache holds one chunk, so that full chunks are compressed one by one, and not all at once
+  // at a flush
   const Id access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
   H5Pset_chunk_cache(access.get(), 11, static_cast<std::size_t>(chunk[0]) * row_bytes, 1.0);
   const Id space(H5Screate_simple(rank, size_.data(), limit.data()), H5Sclose);

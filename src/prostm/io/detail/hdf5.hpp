@@ -1,7 +1,8 @@
 #pragma once
-/// The few calls of HDF5 that recordings need, closed by themselves and silent. Private to io.
+/// RAII wrappers of the few HDF5 calls needed by recordings, without printed errors. Private to io.
 ///
-/// HDF5 is not thread-safe as Debian builds it: one thread at a time may use recorders and readers.
+/// Debian's build of HDF5 is not thread-safe: only one thread at a time may use recorders and
+/// readers.
 
 #include <hdf5.h>
 
@@ -13,7 +14,7 @@
 
 namespace prostm::h5 {
 
-/// While it lives, HDF5 does not print its errors.
+/// Keeps HDF5 from printing errors during its lifetime.
 class Quiet {
  public:
   Quiet();
@@ -38,24 +39,24 @@ class Id {
 
   bool valid() const { return id_ >= 0; }
   hid_t get() const { return id_; }
-  bool close();  ///< false when the library could not
+  bool close();  ///< false on failure of the library
 
  private:
   hid_t id_ = H5I_INVALID_HID;
   Close close_ = nullptr;
 };
 
-/// Opens a file to read it, even if this process has it open elsewhere; invalid on failure.
-/// @param lock as HDF5 does by itself, which fails where the file system has no locks.
+/// Opens a file for reading, even if this process has it open elsewhere; invalid on failure. @param
+/// lock lock the file as HDF5 does by default, which fails on file systems without locks.
 Id open_to_read(const std::string& path, bool lock = true);
-/// Tries the lock that HDF5 takes to read a file: Held while anyone writes it.
+/// Tries the lock that HDF5 uses for reading: Held while another program writes the file.
 LockResult probe_lock(const std::string& path);
 
 /// The description of a dataset's rows.
 struct Column {
   const char* name;
-  hid_t type;                  ///< native, of a number; files hold it as it is in memory
-  std::vector<hsize_t> shape;  ///< of one row; empty for a number
+  hid_t type;                  ///< native type of a number, also used in the file
+  std::vector<hsize_t> shape;  ///< shape of one row; empty for a single number
   const char* unit;
   std::string meaning;
 };
@@ -63,10 +64,10 @@ struct Column {
 /// A dataset that grows by rows: chunked, shuffled and deflated.
 class Table {
  public:
-  /// Creates the dataset with the attributes "unit" and "meaning"; invalid when that failed.
+  /// Creates the dataset with the attributes "unit" and "meaning"; invalid on failure.
   Table(hid_t group, const Column& column);
   bool valid() const { return dataset_.valid(); }
-  /// Appends `rows` rows; false when the library could not. @pre data holds them all.
+  /// Appends `rows` rows; false on failure. @pre data holds all of them.
   bool append(const void* data, hsize_t rows);
   bool close() { return dataset_.close(); }
 
@@ -76,17 +77,18 @@ class Table {
   std::vector<hsize_t> size_;
 };
 
-/// A text of any length; replaces one of the same name. False when the library could not.
+/// Writes a text attribute of any length, replacing one of the same name; false on failure.
 bool write_text(hid_t object, const char* name, const std::string& value);
-/// The text of an attribute, of variable or fixed length, alone or in an array of one; empty when
-/// absent or not a text.
+/// Reads a text attribute, of variable or fixed length, scalar or an array of one; empty if absent
+/// or not a text.
 std::string read_text(hid_t object, const char* name);
 
 /// Reads rows [first, first + count) of a dataset whose rows have `shape`, as native `type`; false
-/// when it is not there, has another shape, is shorter, or cannot be read. @pre out holds them all.
+/// if it is missing, has another shape, is shorter, or cannot be read. @pre out has room for all of
+/// them.
 bool read_rows(hid_t file, const char* path, hid_t type, const std::vector<hsize_t>& shape,
                hsize_t first, hsize_t count, void* out);
-/// Rows of a dataset; -1 when it is not there.
+/// Number of rows of a dataset; -1 if it is missing.
 long long row_count(hid_t file, const char* path);
 
 }  // namespace prostm::h5

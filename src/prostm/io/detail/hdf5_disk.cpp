@@ -20,20 +20,20 @@ namespace {
 
 constexpr haddr_t kMaxAddress = static_cast<haddr_t>(std::numeric_limits<off_t>::max());
 constexpr std::size_t kPageBytes = 16384;
-constexpr std::size_t kStructureBytes = 1 << 19;  // of a file's structure that are kept in memory
+constexpr std::size_t kStructureBytes = 1 << 19;  // bytes of a file's structure kept in memory
 
-/// HDF5's driver information, which comes with the access properties.
+/// Driver information, passed with the access properties.
 struct Report {
   int* error;
 };
 
 struct Disk {
-  H5FD_t base{};  // first, since HDF5 knows a file by it
+  H5FD_t base{};  // must be the first member, since HDF5 uses it as the file
   int fd = -1;
   std::string path;
   int* error = nullptr;
   haddr_t end_of_allocation = 0, end_of_file = 0;
-  haddr_t on_disk = 0;                                    // size of the file on the disk
+  haddr_t on_disk = 0;                                    // size of the file on disk
   std::map<haddr_t, std::array<char, kPageBytes>> pages;  // written since the last flush
 
   ~Disk() { ::close(fd); }
@@ -46,7 +46,7 @@ const Disk& disk_of(const H5FD_t* file) {
   return *reinterpret_cast<const Disk*>(file);
 }
 
-/// Reads from the disk; zeros beyond its end. Returns false if that fails.
+/// Reads from disk, with zeros beyond the end. Returns false on failure.
 bool load(int fd, haddr_t at, char* out, std::size_t size) {
   while (size > 0) {
     const ssize_t n = ::pread(fd, out, size, static_cast<off_t>(at));
@@ -61,7 +61,7 @@ bool load(int fd, haddr_t at, char* out, std::size_t size) {
   return true;
 }
 
-/// 0 or the error.
+/// Writes to disk. Returns 0 or the error.
 int store(int fd, haddr_t at, const char* data, std::size_t size) {
   while (size > 0) {
     const ssize_t n = ::pwrite(fd, data, size, static_cast<off_t>(at));
@@ -74,7 +74,7 @@ int store(int fd, haddr_t at, const char* data, std::size_t size) {
   return 0;
 }
 
-/// Brings the pages to the disk, all or, where it is full, none. 0 or the error.
+/// Writes the pages to disk: all, or none if it is full. Returns 0 or the error.
 int commit(Disk& disk) {
   const haddr_t end = disk.end_of_allocation;
   if (end > disk.on_disk) {
@@ -95,7 +95,7 @@ int commit(Disk& disk) {
 }
 
 /// Calls part(start of the page, offset in it, bytes done before, bytes) for each page that
-/// [at, at + size) touches.
+/// overlaps [at, at + size).
 template <class Part>
 bool for_pages(haddr_t at, std::size_t size, Part&& part) {
   std::size_t done = 0;
@@ -110,7 +110,7 @@ bool for_pages(haddr_t at, std::size_t size, Part&& part) {
 
 H5FD_t* open_disk(const char* name, unsigned flags, hid_t access, haddr_t) {
   const auto* report = static_cast<const Report*>(H5Pget_driver_info(access));
-  // HDF5 first tries whether the file is there, then asks for an empty one
+  // HDF5 first checks whether the file exists, then requests an empty one
   if (report == nullptr || (flags & H5F_ACC_TRUNC) == 0) return nullptr;
   auto disk = std::make_unique<Disk>();
   disk->fd = ::open(name, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -147,7 +147,7 @@ herr_t set_end_of_allocation(H5FD_t* file, H5FD_mem_t, haddr_t end) {
 haddr_t end_of_file(const H5FD_t* file, H5FD_mem_t) {
   return disk_of(file).end_of_file;
 }
-/// HDF5 wants a file to end where what is allocated ends.
+/// Required by HDF5: ends the file at the end of the allocated space.
 herr_t truncate(H5FD_t* file, hid_t, hbool_t) {
   disk_of(file).end_of_file = disk_of(file).end_of_allocation;
   return 0;
@@ -180,7 +180,7 @@ herr_t write_disk(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t size,
   return ok ? 0 : -1;
 }
 
-/// File systems without locks do not keep a recording from being made.
+/// A file system without locks is not an error.
 herr_t lock(H5FD_t* file, hbool_t exclusive) {
   const Disk& disk = disk_of(file);
   const LockKind kind = exclusive ? LockKind::Exclusive : LockKind::Shared;
@@ -209,13 +209,12 @@ H5FD_class_t driver() {
   c.truncate = truncate;
   c.lock = lock;
   c.unlock = unlock;
-  constexpr H5FD_mem_t kPools[] = H5FD_FLMAP_DICHOTOMY;  // numbers apart from structure
+  constexpr H5FD_mem_t kPools[] = H5FD_FLMAP_DICHOTOMY;  // separate pools for numbers and structure
   std::copy(std::begin(kPools), std::end(kPools), c.fl_map);
   return c;
 }
 
-/// Stays registered, like HDF5's own drivers: closing a file uses the driver after letting go of
-/// it.
+/// Stays registered, like HDF5's own drivers: closing a file uses the driver after releasing it.
 hid_t registered_driver() {
   static const hid_t id = [] {
     const H5FD_class_t disk = driver();
@@ -224,7 +223,7 @@ hid_t registered_driver() {
   return id;
 }
 
-/// HDF5's cache of a file's structure at one size: left to itself it grows with the file.
+/// Fixes the size of HDF5's cache of a file's structure, which otherwise grows with the file.
 void bound_cache(hid_t access) {
   H5AC_cache_config_t cache{};
   cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;

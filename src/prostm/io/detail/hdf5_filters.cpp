@@ -14,11 +14,11 @@
 namespace prostm::h5 {
 namespace {
 
-constexpr H5Z_filter_t kLzf = 32000;  // as h5py registered it with The HDF Group
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // of a chunk
+constexpr H5Z_filter_t kLzf = 32000;                      // registered by h5py with The HDF Group
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // largest size of a chunk
 
-/// Decompresses a chunk. The third of the filter's values is the chunk's size, a hint.
-/// @return its bytes; 0 on failure, which leaves the buffer as it is.
+/// Decompresses a chunk. The third of the filter's values is a hint for the chunk's size. @return
+/// the size in bytes; 0 on failure, which leaves the buffer unchanged.
 std::size_t decompress_lzf(unsigned flags, std::size_t count, const unsigned* values,
                            std::size_t bytes, std::size_t* buffer_bytes, void** buffer) {
   if ((flags & H5Z_FLAG_REVERSE) == 0) return 0;
@@ -41,7 +41,7 @@ std::size_t decompress_lzf(unsigned flags, std::size_t count, const unsigned* va
   return 0;
 }
 
-/// The name of a filter that is not available; what its dataset calls it is often empty.
+/// The name of an unavailable filter; the name stored in the dataset is often empty.
 std::string name_of_filter(H5Z_filter_t id, const std::string& said) {
   constexpr std::array<std::pair<H5Z_filter_t, const char*>, 8> kKnown = {
       {{H5Z_FILTER_SZIP, "szip"},
@@ -58,7 +58,7 @@ std::string name_of_filter(H5Z_filter_t id, const std::string& said) {
   return said.empty() ? "filter " + std::to_string(id) : said;
 }
 
-/// A visitor of H5Ovisit: stops at a dataset with a filter that is not available.
+/// Callback of H5Ovisit: stops at a dataset with an unavailable filter.
 herr_t look_at(hid_t file, const char* name, const H5O_info_t* info, void* out) {
   if (info->type != H5O_TYPE_DATASET) return 0;
   const Id dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);

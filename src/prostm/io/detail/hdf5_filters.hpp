@@ -1,5 +1,5 @@
 #pragma once
-/// Compressions of datasets that libhdf5 does not bring along. Private to io.
+/// Dataset compressions that libhdf5 does not include. Private to io.
 
 #include <hdf5.h>
 
@@ -7,12 +7,12 @@
 
 namespace prostm::h5 {
 
-/// Lets HDF5 read datasets that h5py compressed with LZF, in this process; does nothing where a
-/// filter for LZF is registered already.
+/// Enables this process to read datasets compressed by h5py with LZF; does nothing if an LZF filter
+/// is already registered.
 void register_lzf();
 
-/// The first dataset of a file that is compressed with a filter that is not available, as "/a/b is
-/// compressed with blosc"; empty if every filter is available.
+/// Describes the first dataset of a file that needs an unavailable filter: "/a/b is compressed with
+/// blosc"; empty if all filters are available.
 std::string missing_filter(hid_t file);
 
 }  // namespace prostm::h5

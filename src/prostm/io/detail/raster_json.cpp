@@ -52,7 +52,7 @@ void read_raster(const JsonNode& node, TargetField& field) {
                              .vec2(-kMaxCoordinateMm, kMaxCoordinateMm);
   field.origin = Vec2(from_milli(origin_mm.x()), from_milli(origin_mm.y()));
 
-  // the size is checked before anything is allocated for it
+  // check the size before allocating
   constexpr int kAnyCount = 1'000'000'000;
   const int rows = node.at("rows", "the number of rows").integer(-kAnyCount, kAnyCount);
   const int cols = node.at("cols", "the number of columns").integer(-kAnyCount, kAnyCount);
@@ -115,10 +115,10 @@ Pose read_plane(const JsonNode& node) {
   if (x.cross(y).z() < -kTolerance) {
     node.fail(
         "faces away from the array, as x × y does; heights along it must lead away from the "
-        "array, so turn one of the axes round");
+        "array, so reverse one of the axes");
   }
 
-  // axes that are right already stay as they are, to the bit
+  // exact axes stay bit-identical
   Eigen::Matrix3d R;
   constexpr double kRounding = 1e-12;
   const bool exact = std::abs(x.squaredNorm() - 1.0) <= kRounding &&

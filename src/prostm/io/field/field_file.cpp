@@ -18,7 +18,7 @@
 namespace prostm {
 namespace {
 
-// arrays of many frames, and a picture that cannot be compressed, with room to spare
+// enough for arrays of many frames, and for incompressible pictures
 constexpr std::size_t kMaxArrayBytes = std::size_t{1} << 30;
 constexpr std::size_t kMaxPngBytes = std::size_t{16} << 20;
 
@@ -26,20 +26,20 @@ std::string lower_ending(const std::string& path) {
   return lower_case(std::filesystem::path(path).extension().string());
 }
 
-/// @throws InputError for an option that does not belong to this kind of file.
+/// Checks the options. @throws InputError for an option that does not apply to this kind of file.
 void check_options(const std::string& path, FieldKind kind, const FieldFileOptions& options) {
   const bool sized = kind == FieldKind::Json || kind == FieldKind::Recording;
   const bool given = options.cell_mm || options.width_mm;
   const FieldOptionNames& names = options.names;
   if (sized && given) {
-    throw InputError(fmt::format("{} says itself how large a cell is; leave out {} and {}", path,
+    throw InputError(fmt::format("{} contains the size of a cell; leave out {} and {}", path,
                                  names.cell_mm, names.width_mm));
   }
   if (!sized && !given) {
-    throw InputError(
-        fmt::format("{} does not say how large a cell is; give it in mm with {}, or the width of "
-                    "the field with {}",
-                    path, names.cell_mm, names.width_mm));
+    throw InputError(fmt::format(
+        "{} does not contain the size of a cell; give it in mm with {}, or the width of "
+        "the field with {}",
+        path, names.cell_mm, names.width_mm));
   }
   if (options.cell_mm && options.width_mm) {
     throw InputError(fmt::format("{}: {} and {} exclude each other; leave one of them out", path,
@@ -51,11 +51,11 @@ void check_options(const std::string& path, FieldKind kind, const FieldFileOptio
     throw InputError(fmt::format("{} holds one field; leave out {}", path, names.frame));
   }
   if (!options.variable.empty() && kind != FieldKind::Npz) {
-    throw InputError(
-        fmt::format("{} is no .npz file with named arrays; leave out {}", path, names.variable));
+    throw InputError(fmt::format("{} is not an .npz file with named arrays; leave out {}", path,
+                                 names.variable));
   }
   if (options.invert && kind != FieldKind::Png) {
-    throw InputError(fmt::format("{} is no picture; leave out {}", path, names.invert));
+    throw InputError(fmt::format("{} is not a picture; leave out {}", path, names.invert));
   }
 }
 
@@ -68,7 +68,7 @@ TargetField array_field(std::string_view bytes, const std::string& path, FieldKi
   return field_from_npy(bytes, path, cell_mm, options.frame, options.names.frame);
 }
 
-/// An array or a picture with the size that the options give it.
+/// Reads an array or a picture, with the size given by the options.
 TargetField sized_field(std::string_view bytes, const std::string& path, FieldKind kind,
                         const FieldFileOptions& options) {
   TargetField field = array_field(bytes, path, kind, options);
@@ -83,7 +83,7 @@ TargetField sized_field(std::string_view bytes, const std::string& path, FieldKi
   return field;
 }
 
-/// @throws InputError that a frame holds no hand, with the first that does.
+/// Throws an InputError that a frame has no hand, with the first frame that has one.
 [[noreturn]] void refuse_frame(const RecordingReader& recording, const std::string& path,
                                const FieldFileOptions& options) {
   int first = 0;
@@ -94,7 +94,7 @@ TargetField sized_field(std::string_view bytes, const std::string& path, FieldKi
       options.frame.value_or(0), first, options.names.frame));
 }
 
-/// The patch with the larger sum of pressures: a frame of two hands is planned hand by hand.
+/// Returns the patch with the larger sum of pressures: for two hands, each is planned separately.
 TargetField field_from_recording(const std::string& path, const FieldFileOptions& options) {
   const RecordingReader recording(path);
   TargetFrame frame = recording.frame(options.frame.value_or(0));
@@ -108,14 +108,14 @@ TargetField field_from_recording(const std::string& path, const FieldFileOptions
   return std::move(*heaviest);
 }
 
-/// The kind of what standard input carries. @throws InputError for a kind that is not read there.
+/// The kind of the data on standard input. @throws InputError for an unsupported kind.
 FieldKind kind_of_input(std::string_view bytes, const std::string& name) {
   const std::string_view kind = kind_by_content(bytes);
   if (kind == "JSON") return FieldKind::Json;
   if (kind == "an NPY file") return FieldKind::Npy;
   if (kind == "a zip archive") return FieldKind::Npz;
   if (kind == "a PNG picture") return FieldKind::Png;
-  throw InputError(fmt::format("{} carries {}; a field there must be JSON, NPY, NPZ or PNG", name,
+  throw InputError(fmt::format("{} contains {}; a field there must be JSON, NPY, NPZ or PNG", name,
                                kind.empty() ? "no field" : kind));
 }
 
@@ -130,14 +130,14 @@ FieldKind field_kind(const std::string& path) {
   if (ending == ".h5") return FieldKind::Recording;
   if (ending == ".jsonl") {
     throw InputError(fmt::format(
-        "{0} is a recording of hands, not a field; make fields of it with "
+        "{0} is a recording of hands, not a field; make fields from it with "
         "prostm capture --hand {0} --out FILE.h5, or play it with prostm run --hand {0}",
         path));
   }
   const std::string hint = conversion_hint(ending);
-  throw InputError(
-      fmt::format("{} is of no known kind; a field must be a .json, .npy, .npz, .png or .h5 file{}",
-                  path, hint.empty() ? "" : ": " + hint));
+  throw InputError(fmt::format(
+      "{} is of an unknown kind; a field must be a .json, .npy, .npz, .png or .h5 file{}", path,
+      hint.empty() ? "" : ": " + hint));
 }
 
 TargetField read_field(const std::string& path, const FieldFileOptions& options, FieldKind* kind) {

@@ -32,7 +32,7 @@ void read_weights(const JsonNode& node, TargetField& field) {
   }
 }
 
-/// The matrix that `values` are, null off the skin.
+/// The matrix of `values`, with null off the skin.
 nlohmann::ordered_json matrix_json(const TargetField& field, const std::vector<double>& values) {
   auto matrix = nlohmann::ordered_json::array();
   for (int row = 0; row < field.rows; ++row) {

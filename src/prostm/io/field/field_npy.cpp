@@ -1,5 +1,5 @@
-/// NumPy's .npy, versions 1 to 3: a magic, a header that is a Python dictionary, and the array's
-/// bytes (numpy/lib/format.py describes it).
+/// NumPy's .npy, versions 1 to 3: a magic string, a header with a Python dictionary, and the
+/// array's bytes (described in numpy/lib/format.py).
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -38,8 +38,8 @@ struct NpyType {
   throw InputError(name + ": " + problem);
 }
 
-/// Walks through the header's dictionary: only texts, truth values, whole numbers and tuples of
-/// them occur there.
+/// Parses the header's dictionary, which contains only texts, booleans, integers and tuples of
+/// them.
 class HeaderParser {
  public:
   HeaderParser(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -120,7 +120,7 @@ class HeaderParser {
         value = 10.0 * value + (text_[at_] - '0');
       }
       if (at_ == start || at_ > start + 15) broken();
-      accept('L');  // Python 2 wrote long integers so
+      accept('L');  // suffix of long integers in Python 2
       values.push_back(value);
       if (!accept(',')) {
         expect(')');
@@ -187,8 +187,8 @@ double half_value(std::uint64_t bits) {
   return (bits & 0x8000U) != 0 ? -size : size;
 }
 
-/// One number; nothing for NaN, which is told by its bits because a signalling one traps when it is
-/// converted.
+/// One number; nothing for NaN, which is detected by its bits, since converting a signalling NaN
+/// traps.
 std::optional<double> decode(const char* bytes, const NpyType& type) {
   std::uint64_t bits = 0;
   for (std::size_t i = 0; i < type.size; ++i) {
@@ -213,13 +213,14 @@ std::optional<double> decode(const char* bytes, const NpyType& type) {
   return static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused);
 }
 
-/// The frame of an array that is a field: its size, and where its numbers stand.
+/// The frame of an array that is read as a field: its size, and the positions of its numbers.
 struct Frame {
   double rows = 0, cols = 0;
   std::size_t first = 0, row_step = 0, col_step = 0;  // in numbers
 };
 
-/// @throws InputError for an array without rows and columns, or a frame that it does not have.
+/// Finds a frame. @throws InputError for an array without rows and columns, or a frame that does
+/// not exist.
 Frame frame_of(const NpyHeader& header, const std::string& name, std::optional<int> frame,
                const char* frame_option) {
   std::vector<double> shape = header.shape;
@@ -232,7 +233,7 @@ Frame frame_of(const NpyHeader& header, const std::string& name, std::optional<i
   }
   const double frames = shape.size() == 3 ? shape[0] : 1;
   const double rows = shape[shape.size() - 2], cols = shape.back();
-  // the size is checked before anything is allocated for it
+  // check the size before allocating
   check_raster_size(rows, cols, name);
   const int chosen = frame.value_or(0);
   if (frames == 1 && chosen != 0)

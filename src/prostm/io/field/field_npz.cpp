@@ -16,7 +16,7 @@
 namespace prostm {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{1} << 30;  // of an array
+constexpr std::size_t kMaxBytes = std::size_t{1} << 30;  // largest size of an array
 constexpr zip_int64_t kMaxArrays = 10'000;
 constexpr std::string_view kEnding = ".npy";
 
@@ -30,7 +30,7 @@ using Archive = std::unique_ptr<zip_t, ArchiveDeleter>;
 
 [[noreturn]] void broken(const std::string& name, const std::string& why) {
   throw InputError(
-      fmt::format("{}: the archive is cut off or broken ({}), so save it again", name, why));
+      fmt::format("{}: the archive is truncated or damaged ({}); save it again", name, why));
 }
 
 /// @pre bytes outlive the archive.
@@ -62,7 +62,7 @@ std::vector<std::string> arrays_of(zip_t* archive) {
   return names;
 }
 
-/// The array that is asked for, or the only one. @throws InputError if it does not exist.
+/// The requested array, or the only one. @throws InputError if it does not exist.
 std::string chosen_array(const std::vector<std::string>& arrays, const std::string& name,
                          const FieldFileOptions& options) {
   if (arrays.empty()) throw InputError(name + ": holds no array; save one with numpy.savez");
@@ -96,7 +96,7 @@ std::string read_member(zip_t* archive, const std::string& array, const std::str
       zip_fopen(archive, member.c_str(), ZIP_FL_ENC_GUESS));
   if (!file) broken(name, zip_strerror(archive));
 
-  // by parts: the size that an archive states may be wrong, and memory is not taken for it
+  // in parts: the size stated in an archive may be wrong, so it is not allocated in advance
   std::string bytes, part(1 << 16, '\0');
   for (;;) {
     const zip_int64_t n = zip_fread(file.get(), part.data(), part.size());

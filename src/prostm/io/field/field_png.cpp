@@ -16,7 +16,7 @@
 namespace prostm {
 namespace {
 
-/// Width and height from the first chunk, so that a huge picture is refused before it is decoded.
+/// Checks width and height in the first chunk, so that a huge picture is refused before decoding.
 void check_size(std::string_view bytes, const std::string& name) {
   constexpr std::string_view kStart("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
   if (bytes.size() < 24 || bytes.substr(0, kStart.size()) != kStart) {
@@ -32,7 +32,7 @@ void check_size(std::string_view bytes, const std::string& name) {
   check_raster_size(big_endian(20), big_endian(16), name);
 }
 
-/// A picture with 8 or 16 bits a channel, high byte first: grey, grey and alpha, RGB, or RGB and
+/// A picture with 8 or 16 bits per channel, high byte first: grey, grey and alpha, RGB, or RGB and
 /// alpha.
 struct Picture {
   int rows = 0, cols = 0, channels = 0, channel_bytes = 0;
@@ -40,8 +40,8 @@ struct Picture {
   std::size_t row_bytes = 0;
 };
 
-/// One reading of a picture by libpng, which reports errors by longjmp: no frame that it leaves
-/// holds an object with a destructor.
+/// Reads one picture with libpng, which reports errors by longjmp: no stack frame skipped by it has
+/// an object with a destructor.
 class Decoder {
  public:
   explicit Decoder(std::string_view bytes) : rest_(bytes) {
@@ -54,7 +54,7 @@ class Decoder {
 
   const char* reason() const { return reason_.data(); }
 
-  /// Reads up to the pixels, and asks for channels of whole bytes. @return false on failure.
+  /// Reads up to the pixels, and requests channels of whole bytes. @return false on failure.
   bool read_header(Picture& picture) {
     if (png_ == nullptr || info_ == nullptr || setjmp(png_jmpbuf(png_)) != 0) return false;
     png_set_read_fn(png_, this, on_read);
@@ -112,7 +112,7 @@ Picture decode(std::string_view bytes, const std::string& name) {
     done = decoder.read_pixels(lines.data());
   }
   if (!done) {
-    throw InputError(fmt::format("{}: the PNG picture is cut off or broken ({}), so save it again",
+    throw InputError(fmt::format("{}: the PNG picture is truncated or damaged ({}); save it again",
                                  name, decoder.reason()));
   }
   return picture;

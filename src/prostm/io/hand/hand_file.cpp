@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kMaxHandDistance = 10.0;  // farther than any tracker sees [m]
+constexpr double kMaxHandDistance = 10.0;  // beyond the range of any tracker [m]
 constexpr std::size_t kMaxRecordingBytes = std::size_t{256} << 20;
 
 /// An array of exactly `count` numbers.
@@ -90,7 +90,7 @@ void check_header(const JsonNode& header) {
   }
 }
 
-constexpr double kMostLength = 1e6;  // of what may be a hand in some unit
+constexpr double kMostLength = 1e6;  // largest length that may be a hand in some unit
 constexpr HandUnits kUnits = {"t", 1.0, "seconds", 1.0, "metres"};
 
 double time_of(const JsonNode& frame) {
@@ -101,7 +101,7 @@ double time_of(const JsonNode& frame) {
   }
 }
 
-/// Notes the size of the frame's hands as they are written, whether or not they can be read.
+/// Records the size of the frame's hands as written, whether or not they are valid.
 void note_spans(const JsonNode& hands, HandCollector& collector) {
   const auto number = [](const json& list, std::size_t i) {
     const double x = list[i].is_number() ? list[i].get<double>() : std::nan("");
@@ -130,7 +130,7 @@ HandFrame neutral_frame(std::string_view line, const std::string& where, const H
   return frame;
 }
 
-/// Refuses what LeapJS Playback packed.
+/// Refuses a recording compressed by LeapJS Playback.
 [[noreturn]] void refuse_packed(const std::string& path) {
   throw InputError(fmt::format(
       "{0} is compressed by lz-string; decompress it: npm install lz-string; node -e 'const fs = "
@@ -174,13 +174,13 @@ HandRecording read_hand_recording(const std::string& path, const ReadProgress& p
   const std::string text = read_file(path, kMaxRecordingBytes);
   if (!is_json_or_lines(text)) {
     if (path.ends_with(".lz")) refuse_packed(path);
-    // people give --hand what --record has written
+    // a common mistake: --hand given a file written by --record
     const std::string what = kind_by_content(text) == "an HDF5 file"
                                  ? "is a recording of prostm (HDF5), not a hand recording"
                                  : is_not(text, "a hand recording");
     refuse_as_hands(path, what);
   }
-  // a neutral recording says so in its first line
+  // a neutral recording is identified by its first line
   const std::string_view first =
       std::string_view(text).substr(0, std::min(text.find('\n', text.find('{')), text.size()));
   return first.find("\"hand-frames\"") != first.npos ? hands_from_jsonl(text, path, progress)

@@ -1,4 +1,4 @@
-/// Hands of Leap Motion recordings.
+/// Reads hands from Leap Motion recordings.
 
 #include <fmt/format.h>
 
@@ -21,9 +21,9 @@ using nlohmann::json;
 
 constexpr HandUnits kUnits = {"timestamp", 1e6, "microseconds", 1e3, "millimetres"};
 
-/// `value` with the names that `structure` gives to its places: LeapJS packs a string as one value,
-/// an object of one key as a nested list, and a list as an array of such lists. What does not fit
-/// the structure stays as it is, so that it costs no more than the hand that lacks it.
+/// Unpacks `value` with the names in `structure`: LeapJS packs a string as one value, an object of
+/// one key as a nested list, and a list as an array of such lists. Values that do not match the
+/// structure are kept unchanged, so that a fault affects only its hand.
 json unpack(const JsonNode& structure, const JsonNode& value) {
   if (!value.value().is_array() || value.array_size() != structure.array_size())
     return value.value();
@@ -60,16 +60,15 @@ json unpack_frame(const JsonNode& structure, const JsonNode& value) {
   return unpack(structure, value);
 }
 
-/// Whether the first of the frames is LeapJS' packing structure: a list with names in it. Other
-/// recordings have frames in lists of their own.
+/// Whether the first frame is LeapJS' packing structure: a list with names. (Other recordings nest
+/// frames in lists.)
 bool is_packed(const json& frames) {
   if (frames.empty() || !frames[0].is_array()) return false;
   return std::any_of(frames[0].begin(), frames[0].end(),
                      [](const json& entry) { return entry.is_string(); });
 }
 
-/// Notes the size of the frame's hands as they are written, and its rate, whether or not they can
-/// be read.
+/// Records the size of the frame's hands as written, and its rate, whether or not they are valid.
 void note_units(const json& frame, HandCollector& collector) {
   if (!frame.is_object()) return;
   const auto rate = frame.find("currentFrameRate");
@@ -82,14 +81,14 @@ void note_units(const json& frame, HandCollector& collector) {
     Vec3 x = Vec3::Constant(std::nan(""));
     for (std::size_t a = 0; p.is_array() && p.size() == 3 && a < 3; ++a) {
       const double value = p[a].is_number() ? p[a].get<double>() : 1e9;
-      if (std::abs(value) < 1e6) x[static_cast<Eigen::Index>(a)] = value;  // in whatever unit
+      if (std::abs(value) < 1e6) x[static_cast<Eigen::Index>(a)] = value;  // in any unit
     }
     return x;
   };
   collector.note_span((knuckle(1) - knuckle(4)).norm());
 }
 
-/// Takes a frame, or the frames of a list; greetings and events of services are left out.
+/// Adds a frame, or the frames of a list; skips greetings and events of the service.
 void take(const JsonNode& node, const std::string& where, HandCollector& collector) {
   if (node.value().is_array()) {
     for (std::size_t i = 0; i < node.array_size(); ++i)
@@ -115,7 +114,7 @@ void take_packed(const JsonNode& frames, HandCollector& collector) {
   }
 }
 
-/// Takes the messages of a service, one a line.
+/// Adds the messages of the service, one per line.
 void take_lines(std::string_view text, const std::string& name, const ReadProgress& progress,
                 HandCollector& collector) {
   const std::size_t all = text.size();

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kFarthest = 5e3;     // of a tracker from the array, along each axis [mm]
 constexpr double kMaxResidual = 1e3;  // [mm]
-constexpr double kTolerance = 1e-3;   // of a quaternion's length
+constexpr double kTolerance = 1e-3;   // tolerance of a quaternion's length
 
 }  // namespace
 
@@ -38,8 +38,8 @@ Calibration pose_from_json(std::string_view text, const std::string& file) {
   root.allow_only({"format", "position_mm", "quaternion", "rms_mm", "largest_mm"});
   Calibration calibration;
   calibration.X_DT.translation() = from_milli(
-      root.at("position_mm", "where the tracker is, [x, y, z]").vec3(-kFarthest, kFarthest));
-  const JsonNode turn = root.at("quaternion", "how it lies, [x, y, z, w]");
+      root.at("position_mm", "the position of the tracker, [x, y, z]").vec3(-kFarthest, kFarthest));
+  const JsonNode turn = root.at("quaternion", "the orientation of the tracker, [x, y, z, w]");
   if (turn.array_size() != 4)
     turn.fail(fmt::format("has {} numbers; it must have 4: x, y, z, w", turn.array_size()));
   const auto part = [&](std::size_t i) { return turn.at(i).number(-2.0, 2.0); };

@@ -1,5 +1,5 @@
 #pragma once
-/// Where the tracker is, in files: prostm-pose/1.
+/// The pose of the tracker in files: prostm-pose/1.
 
 #include <string>
 #include <string_view>
@@ -9,20 +9,19 @@
 
 namespace prostm {
 
-/// The pose, and what the calibration left.
+/// Returns the pose and the residuals of the calibration.
 std::string pose_to_json(const Calibration& calibration);
 
-/// A quaternion within 1e-3 of length 1 is made a unit one; residuals may be left out (0).
-/// @throws InputError with a sentence: what is not JSON, missing, or out of bounds (positions
-/// within 5 m).
+/// Reads a pose. A quaternion within 1e-3 of length 1 is normalised; residuals may be omitted (0).
+/// @throws InputError: not JSON, a missing value, or one out of bounds (positions within 5 m).
 Calibration pose_from_json(std::string_view text, const std::string& file);
-/// The same from a file. @throws InputError also when it cannot be read.
+/// Reads a pose file. @throws InputError also if it cannot be read.
 Calibration read_pose(const std::string& path);
-/// Writes it whole or not at all. @throws InputError when it cannot be written.
+/// Writes a pose file, completely or not at all. @throws InputError if it cannot be written.
 void write_pose(const std::string& path, const Calibration& calibration);
 
-/// X_DT by name: "centre", one of kTrackerKits, or a file (.json). @throws InputError also for
-/// another name.
+/// Returns X_DT by name: "centre", one of kTrackerKits, or a file (.json). @throws InputError also
+/// for an unknown name.
 Pose tracker_pose_from_name(const std::string& name);
 
 }  // namespace prostm

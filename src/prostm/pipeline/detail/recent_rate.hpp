@@ -1,5 +1,5 @@
 #pragma once
-/// How fast a count grows. Private to pipeline.
+/// Rate of growth of a counter. Private to pipeline.
 
 #include <array>
 #include <cstddef>
@@ -7,17 +7,17 @@
 
 namespace prostm {
 
-/// Growth a second over the last second, or over as much as there is.
+/// Growth per second over the last second, or since the first count if that is shorter.
 class RecentRate {
  public:
-  /// @param time when the count was seen, never before the last one [s].
+  /// @param time the time of the count, not before the last one [s].
   void add(double time, std::int64_t count) {
     entries_[newest_ = (newest_ + 1) % entries_.size()] = {time, count};
     if (size_ < entries_.size()) ++size_;
-    // the oldest that is kept is at most a second old
+    // keep entries of at most the last second
     while (size_ > 1 && time - oldest().time > kSpan) --size_;
   }
-  /// 0 with fewer than two counts [Hz].
+  /// Rate [Hz]; 0 with fewer than two counts.
   double rate() const {
     if (size_ < 2) return 0.0;
     const Entry &first = oldest(), &last = entries_[newest_];

@@ -91,7 +91,7 @@ void PlanLog::write(RunSummary& out) const {
   out.passed_updates = passed_;
   out.held_updates = held_;
   out.held_passed_updates = held_passed_;
-  // a frame without a fault fails for those of the second before
+  // a frame without a fault of its own fails because of those of the second before
   const auto of_field = held_problems_.begin() + static_cast<std::ptrdiff_t>(GateProblem::Maxima);
   const auto most = std::max_element(of_field, held_problems_.end());
   if (*most > 0) out.held_problem = static_cast<GateProblem>(most - held_problems_.begin());

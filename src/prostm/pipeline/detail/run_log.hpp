@@ -11,14 +11,14 @@
 
 namespace prostm {
 
-/// Counts what the world's stage did; used by its thread alone until that has ended.
+/// Counters of the world's stage; used only by its thread until that has ended.
 class WorldLog {
  public:
-  /// A step that has just met the hands.
+  /// Records a step that has just met the hands.
   void meet(const WorldFrame& frame);
-  /// The world has settled after it.
+  /// Records that the world has settled after the step.
   void settle(const WorldStage& stage);
-  /// Steps that were let go.
+  /// Records skipped steps.
   void skip(std::int64_t steps) { skipped_ += steps; }
 
   std::int64_t steps() const { return steps_; }
@@ -27,21 +27,21 @@ class WorldLog {
  private:
   std::int64_t steps_ = 0, skipped_ = 0, resets_ = 0;
   ContactStats contact_stats_;
-  std::span<const WorldQuantity> quantities_;            // of the newest world
-  std::array<double, kMaxWorldQuantities> values_ = {};  // sums over its steps
-  std::int64_t before_ = 0;                              // steps of other worlds
+  std::span<const WorldQuantity> quantities_;            // quantities of the newest world
+  std::array<double, kMaxWorldQuantities> values_ = {};  // sums over the steps of the newest world
+  std::int64_t before_ = 0;                              // steps of earlier worlds
   Distribution track_, hand_, world_, contact_;
 };
 
-/// Counts what the plan stage did, and follows plans to the device; used by its thread alone until
-/// that has ended.
+/// Counters of the plan stage, including the latency of plans to the device; used only by its
+/// thread until that has ended.
 class PlanLog {
  public:
   explicit PlanLog(bool realtime) : latency_(realtime) {}
 
-  /// @param run_start what the device's clock shows at run time 0 [s].
+  /// @param run_start device's clock at run time 0 [s].
   void add(const WorldFrame& contact, const PlanFrame& frame, double run_start);
-  /// Reads what the emitter reported since.
+  /// Reads the emitter's new reports.
   void follow(Emitter& emitter, const Device& device);
 
   const LatencyLog& latency() const { return latency_; }

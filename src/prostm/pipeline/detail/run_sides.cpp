@@ -12,8 +12,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kMostBehind = 3.0;     // steps, up to which a delay is made up for
-constexpr double kLatestPrepare = 0.8;  // of a step, after which the next one is prepared anyway
+constexpr double kMostBehind = 3.0;     // largest delay that is caught up [steps]
+constexpr double kLatestPrepare = 0.8;  // of a step: longest wait for the plan
 constexpr std::chrono::microseconds kPoll{200};
 
 void sleep_until(double time) {
@@ -44,7 +44,7 @@ void WorldSide::count(const WorldFrame& frame) {
   log_.settle(pipeline_.world_stage());
 }
 
-/// A segment ends with a whole update, so that a run that is paused goes on by whole ones.
+/// A segment ends with a complete update, so that a paused run can advance by complete updates.
 bool WorldSide::goes_on() const {
   if (shared_.end.over() || (done() && !shared_.endless)) return false;
   return !(shared_.halt && pipeline_.world_stage().targets(log_.steps()));
@@ -58,7 +58,7 @@ void WorldSide::set_clock() {
   shared_.start = steady_now() - time();
 }
 
-/// The newest target wins.
+/// Steps in real time; a new target replaces one that is not yet planned.
 void WorldSide::in_real_time() {
   WorldStage& stage = pipeline_.world_stage();
   double behind_before = 0.0;  // steps
@@ -66,8 +66,8 @@ void WorldSide::in_real_time() {
     if (pace_.prepare_early) stage.prepare(pace_.dt);
     ++slot_;
     sleep_until(shared_.start + time());
-    // a delay is made up for while each step begins less late than the one before; otherwise let
-    // steps go rather than run after the clock
+    // catch up on a delay as long as each step begins less late than the one before; otherwise skip
+    // steps
     const double behind = run_time() / pace_.dt - static_cast<double>(slot_);
     if (behind >= kMostBehind ||
         (behind >= 1.0 && behind_before >= 1.0 && behind >= behind_before)) {
@@ -92,8 +92,8 @@ void WorldSide::in_real_time() {
   }
 }
 
-/// The hands of `frame`, the draft of the newest, meet the world; true when that made a target,
-/// which is published.
+/// Lets the hands of `frame`, the draft of `newest`, meet the world. Returns true if this made a
+/// target, which is then published.
 bool WorldSide::meet(double due, WorldFrame& frame) {
   pipeline_.world_stage().meet(log_.steps() + 1, due, pace_.dt, frame);
   log_.meet(frame);
@@ -113,8 +113,8 @@ void WorldSide::settled(double time) {
   shared_.run_time.store(time, std::memory_order_relaxed);
 }
 
-/// The hands for a step that is due, with a tracker's frame that came in since if one comes within
-/// `wait` [s].
+/// Takes the hands for a step that is due, waiting up to `wait` [s] for a tracker's frame that
+/// arrives after it was due.
 void WorldSide::take_hands(double due, double wait, WorldFrame& frame) {
   for (;;) {
     const double time = run_time();
@@ -124,7 +124,7 @@ void WorldSide::take_hands(double due, double wait, WorldFrame& frame) {
   }
 }
 
-/// Until the plan of this step was handed over, or until a run time [s].
+/// Waits until the plan of this step is submitted, but at most until run time `latest` [s].
 void WorldSide::wait_for_plan(std::int64_t step, double latest) const {
   while (shared_.planned_step.load(std::memory_order_acquire) < step && run_time() < latest)
     std::this_thread::sleep_for(kPoll);
@@ -144,7 +144,7 @@ void WorldSide::run_to_target() {
   }
 }
 
-/// Plan k uses step k · steps_per_plan, nothing is dropped.
+/// Steps without a clock: plan k uses step k · steps_per_plan, and nothing is dropped.
 void WorldSide::without_clock() {
   double time = 0.0;
   for (std::int64_t n = 1; n <= pace_.steps && !shared_.end.over(); ++n) {
@@ -170,7 +170,7 @@ void PlanSide::run() noexcept {
 void PlanSide::in_real_time() {
   for (bool ended = false; !ended;) {
     shared_.ready.acquire();
-    while (shared_.ready.try_acquire()) {  // targets that are overwritten by now
+    while (shared_.ready.try_acquire()) {  // skip signals of overwritten targets
     }
     ended = shared_.world_ended.load(std::memory_order_acquire);
     plan_newest();
@@ -178,7 +178,7 @@ void PlanSide::in_real_time() {
 }
 
 void PlanSide::without_clock() {
-  // what was asked for before the run was stopped is still planned
+  // targets made before the run was stopped are still planned
   while (!shared_.end.failed()) {
     const bool last = shared_.world_ended.load(std::memory_order_acquire);
     if (WorldFrame* frame = shared_.targets.front()) {

@@ -11,7 +11,7 @@ namespace prostm {
 namespace {
 
 constexpr double kShowPeriod = 0.015, kTellPeriod = 0.25;  // [s]
-constexpr double kLookBack = 5e-3;                         // a period of AM at 200 Hz [s]
+constexpr double kLookBack = 5e-3;                         // one period of AM at 200 Hz [s]
 
 }  // namespace
 
@@ -25,7 +25,7 @@ Steering::Steering(LiveLink& link, Pipeline& pipeline) : link_(link), pipeline_(
 void Steering::attend() {
   using Kind = LiveCommand::Kind;
   LiveSettings wanted = state_.settings;
-  std::vector<std::uint32_t> senders;  // of settings that wait to be taken
+  std::vector<std::uint32_t> senders;  // senders of settings that are not yet applied
   const auto settle = [&] {
     if (!senders.empty()) apply(wanted, senders);
     senders.clear();
@@ -33,7 +33,7 @@ void Steering::attend() {
   };
   LiveCommand command;
   while (link_.control.next(command)) {
-    // settings that come together are taken together: a slider sends many
+    // successive settings are applied together: a slider sends many
     if (command.kind != Kind::Set) settle();
     switch (command.kind) {
       case Kind::Set:
@@ -56,7 +56,7 @@ void Steering::attend() {
         break;
       case Kind::Seek:
         pipeline_.world_stage().hands().seek(command.value);
-        if (!state_.playing) ++updates_asked_;  // to be seen
+        if (!state_.playing) ++updates_asked_;  // so that the new position is shown
         break;
       case Kind::TrackerPose:
         pipeline_.world_stage().set_tracker_pose(command.X_DT);
@@ -138,7 +138,7 @@ void Steering::show(double time, std::int64_t steps, std::int64_t plans, bool fa
   run.full_scale_pressure = pipeline_.plans().full_scale_pressure();
   run.intensity = intensity();
   link_.snapshots.publish_run();
-  // only trackers change without being asked to
+  // only trackers change without a command
   if (state_.tracker && t - told_ > kTellPeriod) publish_state();
 }
 

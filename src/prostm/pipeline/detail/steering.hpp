@@ -1,6 +1,6 @@
 #pragma once
-/// Does between two steps what onlookers ask of a run, and tells them how it stands. Private to
-/// pipeline; the thread that runs it.
+/// Executes viewers' commands between two steps of a run, and publishes its state. Private to
+/// pipeline; used by the thread that runs it.
 
 #include <string>
 #include <vector>
@@ -16,17 +16,17 @@ class Steering {
 
   bool pending() { return link_.control.pending(); }
   bool playing() const { return state_.playing; }
-  /// Lets a run go on that is paused.
+  /// Resumes a paused run.
   void play();
-  /// Does everything that is asked. @pre no other thread uses the pipeline.
+  /// Executes all pending commands. @pre no other thread uses the pipeline.
   void attend();
-  /// Whether one more plan update is asked of a run that is paused.
+  /// Whether a paused run is asked for one more plan update.
   bool next_update();
 
   Snapshots& snapshots() { return link_.snapshots; }
-  /// Publishes the counters, a few dozen times a second at most. @param time run time [s].
-  /// @param steps, plans of the fluid, and plan updates, so far. @param fading no plan came for a
-  /// while.  @param advice while the rates are not held.
+  /// Publishes the counters, a few dozen times per second at most. @param time run time [s].
+  /// @param steps, plans number of steps and plan updates so far. @param fading whether the output
+  /// fades for lack of a plan. @param advice current advice, None while the rates are held.
   void show(double time, std::int64_t steps, std::int64_t plans, bool fading, const Advice& advice);
 
  private:
@@ -40,7 +40,7 @@ class Steering {
   LiveState state_;
   std::shared_ptr<const PipelineSettings> planned_with_;
   int updates_asked_ = 0;
-  double shown_ = 0.0, told_ = 0.0;  // when last [s of the clock]
+  double shown_ = 0.0, told_ = 0.0;  // times of the last call [s of the clock]
   RecentRate step_rate_, plan_rate_;
 };
 

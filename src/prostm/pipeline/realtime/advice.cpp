@@ -9,20 +9,21 @@
 namespace prostm {
 namespace {
 
-// Share of the time there is. The rest is for other stages, for the threads to wake up, and for
-// other programs.
+// Largest share of the available time. The rest is left for other stages, for waking threads, and
+// for other programs.
 constexpr double kBusy = 0.8;
-constexpr double kComfortable = 0.6;  // the same for a setting that is recommended
+constexpr double kComfortable = 0.6;  // the same for a recommended setting
 
 constexpr const char* kOtherwise = "close other programs, or use a faster machine";
 
-/// Whether a step at `cells` fits well into its time. The work grows with the number of cells.
+/// Whether a step at `cells` comfortably fits into its time. The work is proportional to the number
+/// of cells.
 bool fits(int cells, const WorkTime& work, const PipelineSettings& settings) {
   const double edge = static_cast<double>(cells) / settings.fluid.cells;
   return work.step * edge * edge * edge <= kComfortable / settings.world_rate;
 }
 
-/// The finest coarser grid that fits and, as far as is known, keeps the stimulus.
+/// The finest coarser grid that fits and is not known to lose the stimulus.
 Advice coarser_grid(const WorkTime& work, const PipelineSettings& settings) {
   if (!is_smoke(settings)) return {AdviceKind::NoOption};
   for (const int cells : coarser_grids(settings.scene, settings.fluid.cells)) {
@@ -40,7 +41,7 @@ Advice less_to_plan(const PipelineSettings& settings) {
   return {paths > 1 ? AdviceKind::FewerPaths : AdviceKind::NoOption};
 }
 
-/// Whether parts of the pressure are computed that nobody feels.
+/// Whether parts of the pressure are computed only for recording.
 bool computes_parts(const PipelineSettings& settings) {
   return is_smoke(settings) && settings.fluid_pressure.parts &&
          settings.fluid_pressure.part == PressurePart::All;

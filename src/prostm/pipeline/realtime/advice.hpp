@@ -1,6 +1,6 @@
 #pragma once
-/// Advice for runs that do not hold their rates. Each option is chosen from its effect on the
-/// rates and on the stimulus of the scene; all messages of a run take it from here.
+/// Advice for runs that do not keep up. Options are chosen by their effect on the rates and on the
+/// stimulus of the scene; all messages of a run use this advice.
 
 #include <array>
 #include <cstdint>
@@ -10,29 +10,29 @@
 
 namespace prostm {
 
-/// Time that each of the two threads computes, at the median or on the mean [s].
+/// Computing time of each of the two threads, median or mean [s].
 struct WorkTime {
-  double step = 0.0;  ///< everything that the world's thread does for a step
-  double plan = 0.0;  ///< everything that the planner's thread does for a plan
+  double step = 0.0;  ///< world's thread, per step
+  double plan = 0.0;  ///< planner's thread, per plan
 };
 
-/// The thread that has too much to do.
+/// The thread that is overloaded.
 enum class Busy : std::uint8_t { Step, Plan, Neither };
 Busy busy(const WorkTime& work, const PipelineSettings& settings);
 
 enum class AdviceKind : std::uint8_t {
   None,         ///< nothing to advise
-  OneField,     ///< leave out the parts of the pressure, which are only recorded
-  Grid,         ///< a coarser grid, which keeps the stimulus
-  UnknownGrid,  ///< a coarser grid, whose effect on the stimulus is not known
-  FastPreset,   ///< leaves the stimulus, which is made before plans, as it is
+  OneField,     ///< do not compute the parts of the pressure, which are only recorded
+  Grid,         ///< a coarser grid that keeps the stimulus
+  UnknownGrid,  ///< a coarser grid with unknown effect on the stimulus
+  FastPreset,   ///< does not affect the stimulus, which is made before plans
   FewerPaths,   ///< likewise
-  NoOption      ///< none is fast enough and keeps the stimulus
+  NoOption      ///< no option is fast enough and keeps the stimulus
 };
 
 struct Advice {
   AdviceKind kind = AdviceKind::None;
-  int cells = 0;  ///< of Grid and UnknownGrid
+  int cells = 0;  ///< for Grid and UnknownGrid
   Busy cause = Busy::Neither;
   bool operator==(const Advice&) const = default;
 };
@@ -43,12 +43,12 @@ Advice advise(const WorkTime& work, const PipelineSettings& settings);
 /// The advice in a sentence or two; empty for None.
 std::string sentence(const Advice& advice, const PipelineSettings& settings);
 
-/// Keeps to one option for each cause while the settings that it is chosen from stay, so that the
-/// messages of a run never contradict each other, however its times vary.
+/// Keeps the first option for each cause until the relevant settings change, so that the messages
+/// of a run never contradict each other, however its times vary.
 class Adviser {
  public:
   const Advice& advise(const WorkTime& work, const PipelineSettings& settings);
-  /// Whether the options given are for these settings.
+  /// Whether the options given so far are for these settings.
   bool is_for(const PipelineSettings& settings) const { return key_of(settings) == key_; }
 
  private:
@@ -65,7 +65,7 @@ class Adviser {
   static Key key_of(const PipelineSettings& settings);
 
   Key key_;
-  std::array<Advice, 2> given_;  // for work of a step, and for that of a plan
+  std::array<Advice, 2> given_;  // for an overloaded step, and for an overloaded plan
 };
 
 }  // namespace prostm

@@ -21,7 +21,7 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 /// Cores of a group of v2, whose cpu.max is "max 100000" or "150000 100000".
 double of_v2(const fs::path& group) {
   std::ifstream file(group / "cpu.max");
-  double quota = 0.0, period = 0.0;  // "max" is no number
+  double quota = 0.0, period = 0.0;  // "max" is not a number
   return file >> quota >> period && quota > 0.0 && period > 0.0 ? quota / period : kNoLimit;
 }
 
@@ -33,8 +33,8 @@ double of_v1(const fs::path& group) {
   return known && quota > 0.0 && period > 0.0 ? quota / period : kNoLimit;
 }
 
-/// The least of `path` and all groups above it. In a container the path may be the host's, which is
-/// not there; its root always is.
+/// The smallest limit of `path` and all groups above it. In a container the path may be the host's
+/// and not exist; the root always exists.
 template <class Limit>
 double least_above(const fs::path& mount, const fs::path& path, Limit&& limit) {
   double least = limit(mount);

@@ -1,6 +1,6 @@
 #include "prostm/pipeline/realtime/machine.hpp"
 
-// as the kernels are compiled
+// the same targets as for the kernels
 #ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #endif
@@ -22,7 +22,7 @@
 namespace prostm {
 namespace {
 
-/// The value of "model name", as Linux tells it on x86.
+/// The value of "model name", as reported by Linux on x86.
 std::string cpu_model() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kDefaultCells = FluidSettings{}.cells;
 
-/// How much time the stages leave.
+/// Describes the slack of the stages.
 std::string slack(const RunSummary& s) {
   const PipelineSettings settings;
   const double step = 1e3 / settings.world_rate;
@@ -24,7 +24,7 @@ std::string slack(const RunSummary& s) {
       step * settings.steps_per_plan());
 }
 
-/// The setup for a scene on a machine that holds its rates with `held`, and with all coarser grids.
+/// The setup for a scene on a machine that holds its rates with `held` and all coarser grids.
 std::optional<CheckedSetup> use_in(const std::string& scene, const CheckedSetup& held) {
   const std::vector<int> grids = coarser_grids(scene, held.cells + 1);
   if (grids.empty()) return {};
@@ -42,7 +42,7 @@ std::string listed(const std::vector<std::string>& names) {
   return all;
 }
 
-/// Sentences on what to use in which scenes, where the defaults do not hold.
+/// Adds sentences on which setup to use in which scenes, if the defaults do not hold the rates.
 void tell_scenes(const MachineAnswer& answer, std::vector<std::string>& out) {
   std::vector<std::string> without, options;
   for (const SceneAnswer& of : answer.scenes) {
@@ -112,7 +112,7 @@ MachineAnswer answer_of(std::span<const Trial> trials, std::span<const std::stri
         last.holds() ? use_in(scene, last.setup) : std::optional<CheckedSetup>();
     answer.scenes.push_back({scene, use});
   }
-  // the coarsest is the option of all scenes only if each keeps its stimulus there
+  // the last setup is recommended for all scenes only if all keep their stimulus with it
   const auto same = [&](const SceneAnswer& of) {
     return of.use && of.use->cells == answer.scenes.front().use->cells;
   };

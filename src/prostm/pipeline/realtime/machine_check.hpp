@@ -1,6 +1,6 @@
 #pragma once
-/// Whether a machine holds the rates of a run in real time, and with which options that keep the
-/// stimulus of a scene; judged from trials.
+/// Decides from trials whether a machine keeps up in real time, and finds options with which it
+/// does without a change of the scene's stimulus.
 
 #include <optional>
 #include <span>
@@ -19,8 +19,8 @@ struct CheckedSetup {
 /// "--grid 64 --preset best".
 std::string options_of(const CheckedSetup& setup);
 
-/// From the defaults to the cheapest, with the grids that keep the stimulus of one scene of
-/// `scenes` at least (grid_effect). @throws std::invalid_argument for an unknown scene.
+/// Setups to try, from the defaults to the cheapest, with grids that keep the stimulus of at least
+/// one of `scenes` (grid_effect()). @throws std::invalid_argument for an unknown scene.
 std::vector<CheckedSetup> checked_setups(std::span<const std::string> scenes);
 
 /// Every scene with a stimulus.
@@ -33,22 +33,22 @@ struct Trial {
   bool holds() const { return verdict.held.value_or(false); }
 };
 
-/// Options for a scene.
+/// The recommended options for a scene.
 struct SceneAnswer {
   std::string scene;
-  std::optional<CheckedSetup> use;  ///< holds the rates and keeps the stimulus; nothing: none does
+  std::optional<CheckedSetup> use;  ///< holds the rates and keeps the stimulus, if any
 };
 
 struct MachineAnswer {
   bool defaults_hold = false;
   std::vector<SceneAnswer> scenes;
-  /// Options for every scene; nothing where they differ, or a scene has none.
+  /// Options for all scenes; nothing if they differ, or a scene has none.
   std::optional<CheckedSetup> use;
-  std::vector<std::string> sentences;  ///< what to tell, and what to do
+  std::vector<std::string> sentences;  ///< results and remedies
 };
 
-/// @param trials of checked_setups() in their order; the first is of the defaults, and only the
-/// last may have held.
+/// Derives the answer from trials. @param trials the trials of checked_setups() in their order; the
+/// first uses the defaults, and only the last may have held the rates.
 MachineAnswer answer_of(std::span<const Trial> trials, std::span<const std::string> scenes);
 
 }  // namespace prostm

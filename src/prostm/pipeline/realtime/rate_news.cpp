@@ -8,7 +8,7 @@ std::optional<std::string> RateNews::look(const WorldFrame& contact, const PlanF
                                           const PipelineSettings& settings) {
   const int steps_per_plan = settings.steps_per_plan();
   const Span anew{contact.due, steps_per_plan, contact.step, plan.id};
-  // a pause does not count: run time stands still in it. Another method has other rates
+  // pauses do not count, since run time stands still; another method has other rates
   if (!span_ || span_->steps_per_plan != steps_per_plan) span_ = anew;
   if (!adviser_.is_for(settings)) advice_ = {};
   Span& span = *span_;
@@ -26,7 +26,7 @@ std::optional<std::string> RateNews::look(const WorldFrame& contact, const PlanF
   const WorkTime work{span.step_time / updates, span.plan_time / updates};
   span_ = anew;
   const bool missed = done < kHeld * due || plans_done < kHeld * plans_due;
-  // other settings may have other options
+  // other settings may lead to other advice
   const bool advised = advice_.kind != AdviceKind::None;
   if (missed == missed_ && missed == advised) return {};
   missed_ = missed;

@@ -1,5 +1,5 @@
 #pragma once
-/// The news of a run's rates for those who watch it, each change once.
+/// Messages about the rates of a run, one for each change.
 
 #include <optional>
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace prostm {
 
-/// Tells, while a run in real time goes on, that it does not hold its rates and what to turn down,
-/// and that it holds them again.
+/// Reports during a real-time run when it does not hold its rates, with advice, and when it holds
+/// them again.
 class RateNews {
  public:
-  /// Looks at an update, of which some may be left out. @param settings of the run now.
-  /// @return a sentence, or nothing where there is nothing new.
+  /// Processes an update; updates may be missing. @param settings current settings of the run.
+  /// @return a sentence, or nothing if there is no news.
   std::optional<std::string> look(const WorldFrame& contact, const PlanFrame& plan,
                                   const PipelineSettings& settings);
 
@@ -22,13 +22,13 @@ class RateNews {
   const Advice& advice() const { return advice_; }
   const Adviser& adviser() const { return adviser_; }
 
-  static constexpr double kOver = 5.0;   ///< over which rates are taken [s]
-  static constexpr double kHeld = 0.98;  ///< share of a rate that counts as kept
+  static constexpr double kOver = 5.0;   ///< averaging time of rates [s]
+  static constexpr double kHeld = 0.98;  ///< share of a rate that counts as held
 
  private:
   struct Span {
     double begin = 0.0;      // run time [s]
-    int steps_per_plan = 0;  // with which it began
+    int steps_per_plan = 0;  // value at the beginning
     std::int64_t steps = 0, plans = 0, updates = 0;
     double step_time = 0.0, plan_time = 0.0;  // sums over the updates [s]
   };

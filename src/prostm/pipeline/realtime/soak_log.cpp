@@ -8,12 +8,12 @@
 namespace prostm {
 namespace {
 
-constexpr double kSettle = 1.0;    // after a load, while the queue is filled again [s]
-constexpr double kGap = 0.010;     // of a program that looks every 2 ms [s]
-constexpr double kStolen = 0.004;  // processor time that a host took [s]
-constexpr double kOthers = 0.2;    // cores that other programs take
+constexpr double kSettle = 1.0;    // settling time after a load, while the queue refills [s]
+constexpr double kGap = 0.010;     // smallest gap reported, for a program that polls every 2 ms [s]
+constexpr double kStolen = 0.004;  // smallest stolen processor time reported [s]
+constexpr double kOthers = 0.2;    // smallest use by other programs reported [cores]
 
-/// "late_blocks" as people write it.
+/// "late_blocks" in words.
 std::string words_of(const char* name) {
   std::string words = name;
   std::ranges::replace(words, '_', ' ');
@@ -40,7 +40,7 @@ bool SoakLog::is_loaded_at(double time) const {
 
 void SoakLog::count(double time, const SoakCounts& counts) {
   if (!counting_) {
-    // the device began before the run
+    // the device started before the run
     counting_ = true;
     counts_ = counts;
     counted_at_ = time;
@@ -52,7 +52,7 @@ void SoakLog::count(double time, const SoakCounts& counts) {
     if (quantity.better != Better::Less) continue;
     const auto more = static_cast<std::int64_t>(value_of(quantity, counts.device) -
                                                 value_of(quantity, counts_.device));
-    // a block that was missed was late, too
+    // a missed block also counts as late
     const bool is_late = std::string_view(quantity.name) == "late_blocks";
     if (is_late) missed = counts.device.missed_blocks - counts_.device.missed_blocks;
     add(time, words_of(quantity.name), is_late && missed > 0 ? more - 1 : more, is_late);
@@ -93,7 +93,7 @@ void SoakLog::update(double due, std::int64_t step, std::int64_t updates, double
 
 void SoakLog::use(double time, const MachineUse& use) {
   for (SoakDip& dip : open_) {
-    // those of a quiet part are told however many there were beside the load
+    // limits are per part, so that the load cannot crowd out dips of quiet parts
     std::size_t& kept = kept_[static_cast<std::size_t>(dip.part)][dip.covered ? 1 : 0];
     if (kept >= kMostDips) {
       ++left_out_;
@@ -120,7 +120,7 @@ void SoakLog::forget_evidence() {
   problem_.clear();
 }
 
-/// @param seconds since the look at the machine before.
+/// @param seconds time since the previous use().
 std::string SoakLog::cause_of(const SoakDip& dip, double seconds, const MachineUse& use) const {
   if (!problem_.empty()) return "the device: " + problem_;
   if (parts_[static_cast<std::size_t>(dip.part)].loaded) return "the load of this soak";

@@ -12,25 +12,24 @@
 namespace prostm {
 namespace {
 
-constexpr std::size_t kMostSentences = 4;  // that a newcomer reads in ten seconds
+constexpr std::size_t kMostSentences = 4;  // as many as a newcomer reads in ten seconds
 
-// A missing step stops the smoke for 20 ms, a missing plan lets the paths go round once or twice
-// more. One in a hundred is a hiccup every two seconds or less.
+// A missing step stops the smoke for 20 ms; a missing plan repeats the paths once or twice. One in
+// a hundred is a hiccup every two seconds at most.
 constexpr double kLeastDone = 0.99;
-// A missed block is a gap: of blocks of a millisecond, one each second.
+// A missed block is a gap; with blocks of 1 ms, this is one gap per second.
 constexpr double kMostMissed = 1e-3;
-// Shares above which something is told: well above what a cycle of the scripted hand makes in the
-// scenes, at most 16 % of the samples at full scale, none limited or capped, 7 % of the joints
-// outside the box as it comes in, 11 % of its skin steep.
+// Shares above which a fault is reported. They are well above those of a cycle of the scripted hand
+// in the scenes: at most 16 % of the samples at full scale, none limited or capped, 7 % of the
+// joints outside the box as the hand enters, 11 % of its skin steep.
 constexpr double kMostSaturated = 0.25, kMostLimited = 0.1, kMostOutside = 0.25, kMostSteep = 0.5,
                  kMostCapped = 0.01;
-constexpr std::int64_t kLeastHeld = 25;  // updates of a held hand from which it is judged
-constexpr double kComesIn =
-    10.0;  // a hand that comes in is outside; a short run sees little else [s]
-// Share of a tracker's frames.
+constexpr std::int64_t kLeastHeld = 25;  // fewest updates of a held hand to judge it
+constexpr double kComesIn = 10.0;        // shorter runs are mostly the hand entering the box [s]
+// Tolerated share of a tracker's frames.
 constexpr double kMostDropped = 0.01;
 
-/// @param of_none what it is where there is nothing to have a share of.
+/// @param of_none result if `all` is 0.
 double share(std::int64_t part, std::int64_t all, double of_none = 0.0) {
   return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : of_none;
 }
@@ -38,24 +37,24 @@ std::int64_t slots(const RunSummary& s) {
   return s.world_steps + s.skipped_world_steps;
 }
 
-/// Sentences on the most likely reason why steps or plans are missing, and what to do. @pre a step
-/// was made.
+/// Sentences on the most likely reason for missing steps or plans, and the remedy. @pre a step was
+/// made.
 std::string reason(const RunSummary& s, const PipelineSettings& settings) {
   const double due = 1.0 / settings.world_rate;
   const double steps_per_plan = settings.steps_per_plan();
-  // what one thread does one after the other
+  // the stages that run on one thread
   const WorkTime work{s.track.p50 + s.hand.p50 + s.world.p50 + s.contact.p50 / steps_per_plan,
                       s.plan.p50 + s.lift.p50};
-  Adviser adviser = s.adviser;  // an option that was advised during the run stays
+  Adviser adviser = s.adviser;  // keeps the option advised during the run
   const Advice advice = adviser.advise(work, settings);
   const std::string what_to_do = sentence(advice, settings);
   switch (advice.cause) {
     case Busy::Step:
-      return fmt::format("A step takes {:.1f} ms (median) and has {:.0f} ms. {}", 1e3 * work.step,
-                         1e3 * due, what_to_do);
+      return fmt::format("A step takes {:.1f} ms (median); the budget is {:.0f} ms. {}",
+                         1e3 * work.step, 1e3 * due, what_to_do);
     case Busy::Plan:
-      return fmt::format("A plan takes {:.1f} ms (median) and has {:.0f} ms. {}", 1e3 * work.plan,
-                         1e3 * due * steps_per_plan, what_to_do);
+      return fmt::format("A plan takes {:.1f} ms (median); the budget is {:.0f} ms. {}",
+                         1e3 * work.plan, 1e3 * due * steps_per_plan, what_to_do);
     case Busy::Neither:
       break;
   }
@@ -70,7 +69,7 @@ std::string times_text(std::int64_t n) {
   return n == 1 ? "once" : n == 2 ? "twice" : fmt::format("{} times", n);
 }
 
-/// Why blocks were missed, by measured cause, the most frequent first.
+/// Measured causes of missed blocks, the most frequent first.
 std::string gap_causes(const RunSummary& s) {
   const DeviceStats& d = s.device;
   const std::int64_t late = d.missed_blocks - d.lost_blocks - d.slow_blocks;
@@ -106,7 +105,7 @@ void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict&
     out.sentences.push_back(fmt::format(
         "The rates were held: {}, {:.4g} samples a millisecond{}.", rates,
         1e-3 * s.played_by.sample_rate,
-        s.device.missed_blocks > 0 ? fmt::format(" ({} missed, hardly to be felt)", missed) : ""));
+        s.device.missed_blocks > 0 ? fmt::format(" ({} missed, hardly noticeable)", missed) : ""));
     return;
   }
   if (!in_time) {
@@ -120,25 +119,25 @@ void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict&
       1e3 * static_cast<double>(s.device.missed_blocks) * s.played_by.block_time(), gap_causes(s)));
 }
 
-/// The gate's fault of the fields of a held hand, in words.
+/// Describes the gate's problem with the fields of a held hand.
 std::string fault_text(GateProblem problem) {
   switch (problem) {
     case GateProblem::Maxima:
-      return "another number of maxima";
+      return "a wrong number of maxima";
     case GateProblem::Balance:
-      return "maxima that are not alike";
+      return "unequal maxima";
     case GateProblem::Saddle:
-      return "maxima that run into each other";
+      return "maxima that merge";
     case GateProblem::Area:
-      return "another area";
+      return "a wrong area";
     case GateProblem::Force:
-      return "another force";
+      return "a wrong force";
     default:
-      return "faults that change";
+      return "varying problems";
   }
 }
 
-/// Reports a hand that was held well for long enough and did not get the stimulus.
+/// Reports a hand that was held well for long enough but did not get the stimulus.
 void judge_stimulus(const RunSummary& s, const PipelineSettings& settings,
                     std::vector<std::string>& out) {
   const double passed = share(s.held_passed_updates, s.held_updates);
@@ -171,17 +170,17 @@ void judge_pace(const RunSummary& s, Verdict& out) {
 void judge_tracker(const TrackerStatus& tracker, std::vector<std::string>& out) {
   const double refused = share(tracker.dropped + tracker.repeated, tracker.frames);
   if (tracker.frames == 0) {
-    out.push_back(fmt::format("No frame of a hand ever came: {}.", tracker.sentence));
+    out.push_back(fmt::format("No hand frame ever arrived: {}.", tracker.sentence));
   } else if (!tracker.connected) {
-    out.push_back(
-        fmt::format("The tracker was lost and not there at the end: {}.", tracker.sentence));
+    out.push_back(fmt::format("The tracker was lost and had not come back at the end: {}.",
+                              tracker.sentence));
   } else if (tracker.reconnects > 0) {
     out.push_back(
-        fmt::format("The tracker was lost {} times and came back; without it no hand is "
-                    "there and nothing is felt.",
+        fmt::format("The tracker was lost {} times and came back; meanwhile there was no hand, "
+                    "and nothing was felt.",
                     tracker.reconnects));
   } else if (refused > kMostDropped) {
-    out.push_back(fmt::format("{:.0f} % of the tracker's {} frames were not taken: {}.",
+    out.push_back(fmt::format("{:.0f} % of the tracker's {} frames were discarded: {}.",
                               100.0 * refused, tracker.frames, tracker.sentence));
   }
 }
@@ -198,7 +197,7 @@ void judge_contact(const ContactStats& contact, double seconds, bool felt, BoxFo
   } else if (!felt) {
     out.emplace_back("No pressure reached the hand, so nothing was felt.");
   } else if (follows == BoxFollows::Nothing && seconds > kComesIn && outside > kMostOutside) {
-    // a box that follows one point need not hold the whole hand
+    // a box that follows one point may not contain the whole hand
     out.push_back(
         fmt::format("{:.0f} % of the hand's joints were outside the smoke's box, where nothing is "
                     "felt: {}.",
@@ -218,8 +217,8 @@ void judge_output(const RunSummary& s, std::vector<std::string>& out) {
                limited = share(s.emit.limited, s.emit.samples);
   if (saturated > kMostSaturated) {
     out.push_back(fmt::format(
-        "{:.0f} % of the samples were at full scale, {:.3g} Pa: stronger pressure feels "
-        "no stronger. Raise full_scale_pressure in [emit] (--settings).",
+        "{:.0f} % of the samples were at full scale, {:.3g} Pa, where stronger pressure feels "
+        "the same. Raise full_scale_pressure in [emit] (--settings).",
         100.0 * saturated, s.full_scale_pressure));
   }
   if (limited > kMostLimited) {
@@ -236,7 +235,7 @@ void judge_output(const RunSummary& s, std::vector<std::string>& out) {
   }
 }
 
-/// Reports when the hand of a page was released without being asked to: the output changed with it.
+/// Reports unrequested releases of a page's hand, since they change the output.
 void judge_page_hand(const RunSummary& s, std::vector<std::string>& out) {
   if (s.hidden_page_hands > 0) {
     out.push_back(fmt::format(
@@ -252,19 +251,18 @@ void judge_page_hand(const RunSummary& s, std::vector<std::string>& out) {
   }
 }
 
-/// Reports plans that were not played as they are.
+/// Reports plans that were not played unchanged.
 void judge_played(const RunSummary& s, std::vector<std::string>& out) {
   if (s.emit.changed_paths > 0) {
-    out.push_back(
-        fmt::format("{} paths were played at another speed than planned, {:.2f} m/s at most: focal "
-                    "points move at {:.4g} m/s at most.",
-                    s.emit.changed_paths, s.focus_speed.max, s.played_by.max_focus_speed()));
+    out.push_back(fmt::format(
+        "{} paths were played at another speed than planned, up to {:.2f} m/s; the limit for focal "
+        "points is {:.4g} m/s.",
+        s.emit.changed_paths, s.focus_speed.max, s.played_by.max_focus_speed()));
   }
   if (s.emit.dropped_paths > 0) {
     out.push_back(
-        fmt::format("{} paths or foci of plans were not played, since there were fewer focal "
-                    "points: raise foci "
-                    "in [emit] (--settings), or use fewer --paths.",
+        fmt::format("{} paths or foci of plans were not played because there were fewer focal "
+                    "points: raise foci in [emit] (--settings), or use fewer --paths.",
                     s.emit.dropped_paths));
   }
 }
@@ -273,19 +271,19 @@ void judge_played(const RunSummary& s, std::vector<std::string>& out) {
 void judge_faults(const RunSummary& s, std::vector<std::string>& out) {
   if (s.world_resets > 0) {
     out.push_back(fmt::format(
-        "The smoke went wrong {} times and began anew at rest: what was felt then means "
-        "nothing.",
+        "The smoke simulation failed {} times and restarted at rest: ignore what was felt "
+        "then.",
         s.world_resets));
   }
   if (s.limited_samples > 0) {
     out.push_back(fmt::format(
-        "{} samples were outside the device's limits and were cut down: a stage before it is at "
+        "{} samples were outside the device's limits and were clamped: an earlier stage is at "
         "fault.",
         s.limited_samples));
   }
 }
 
-/// Reports what the caps of [safety] cost.
+/// Reports samples weakened by the caps of [safety].
 void judge_safety(const RunSummary& s, std::vector<std::string>& out) {
   const double capped = share(capped_samples(s.safety), s.emit.samples);
   if (capped <= kMostCapped) return;
@@ -324,7 +322,7 @@ HeldRate world_rate(const RunSummary& s, const PipelineSettings& settings) {
   return {due * share(s.world_steps, slots(s), 1.0), due};
 }
 
-/// Targets come with every so many steps that are made: a skipped step takes its share along.
+/// Targets are made every steps_per_plan steps, so skipped steps also skip targets.
 HeldRate plan_rate(const RunSummary& s, const PipelineSettings& settings) {
   const std::int64_t made = s.plans + s.empty_updates;
   const double due = settings.world_rate / settings.steps_per_plan();

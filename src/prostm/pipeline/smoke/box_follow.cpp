@@ -9,7 +9,7 @@ namespace {
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
-  v.field({.name = "follow", .help = "what the smoke's box follows"}, s.follow);
+  v.field({.name = "follow", .help = "point that the smoke's box follows"}, s.follow);
 }
 
 }  // namespace
@@ -22,10 +22,10 @@ void BoxSettings::visit(SettingsWriter& v) {
 }
 
 CellShift BoxFollower::shift(const HandFrame& hands, const GridShape& now) const noexcept {
-  constexpr double kReach = 10.0;  // nobody's hand is farther from the array [m]
+  constexpr double kReach = 10.0;  // hands farther from the array are ignored [m]
   const double edge = now.cell * now.nx;
   Vec3 wanted = home_.p_DF;
-  double slack = 0.0;  // a box that follows nothing goes home
+  double slack = 0.0;  // a box that follows nothing returns exactly to its home
   if (settings_.follow != BoxFollows::Nothing) {
     const Vec3 middle = edge * Vec3(0.5, 0.5, 2.0 / 3.0);
     const auto joint = settings_.follow == BoxFollows::Palm ? kPalm : kIndexTip;

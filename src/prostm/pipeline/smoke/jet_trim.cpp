@@ -8,14 +8,15 @@ namespace {
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
-  v.field({.name = "place", .help = "where jets blow: over the array, or under the first palm"},
-          s.place);
-  v.field({"trim_rate", "1/s", 0, 5, "rate at which jets are made to press alike; 0: never"},
+  v.field(
+      {.name = "place", .help = "position of the jets: over the array, or under the first palm"},
+      s.place);
+  v.field({"trim_rate", "1/s", 0, 5, "rate at which the pressures of jets are equalised; 0: off"},
           s.trim_rate);
-  v.field({"trim_limit", "", 0, 0.9, "how far a jet's gain may go from 1"}, s.trim_limit);
+  v.field({"trim_limit", "", 0, 0.9, "largest distance of a jet's gain from 1"}, s.trim_limit);
 }
 
-/// The jet nearest to a point, by x and y.
+/// Index of the jet nearest to a point in x and y.
 std::size_t nearest(std::span<const SmokeJet> jets, const Vec2& p) {
   std::size_t best = 0;
   for (std::size_t q = 1; q < jets.size(); ++q) {

@@ -11,11 +11,11 @@ namespace {
 
 using namespace literals;
 
-constexpr double kForce = 0.45e-3;  // of every scene but still air [N]
+constexpr double kForce = 0.45e-3;  // force of every scene except still air [N]
 
-/// Thin plumes that are far enough apart to be felt as places of their own. They are guided and
-/// have an eddy viscosity, without which they meander and merge. The broad part of a hand is in
-/// front of its palm joint, and so are they.
+/// Thin plumes, far enough apart to be felt separately. They are guided and have an eddy viscosity,
+/// without which they meander and merge. They are placed in front of the palm joint, where the hand
+/// is broad.
 SmokeInflow thin_plumes(const std::vector<Vec2>& centres, double speed) {
   const Vec2 ahead(0.0, 13.2_mm);
   SmokeInflow inflow{{}, 0.06, 0.965e-4, 0.10, 0.1};
@@ -27,7 +27,8 @@ SmokeInflow wide_plume() {
   return {{SmokeJet{Vec2(0.0, 3.0_mm), 106.4_mm, 0.316}}, 0.02, 2.46e-4};
 }
 
-/// Six jets, between which air escapes from the middle; a closed ring of air would press there too.
+/// Six jets. Air escapes from the middle between them; a closed ring of air would also press in its
+/// middle.
 SmokeInflow ring_of_plumes() {
   constexpr int kJets = 6;
   SmokeInflow inflow{{}, 0.06, 0.5e-4, 0.10, 0.1};
@@ -39,28 +40,28 @@ SmokeInflow ring_of_plumes() {
   return inflow;
 }
 
-/// Puffs through a tube, so that they reach the hand as they left the floor.
+/// Puffs through a tube, so that they reach the hand unchanged.
 SmokeInflow pulsing_plume() {
   return {{SmokeJet{Vec2(0.0, 15.0_mm), 30_mm, 0.422}}, 0.06, 0.95e-4, 0.10, 0.1};
 }
 
-/// Smoke through the whole floor.
+/// Inflow through the whole floor.
 SmokeInflow wind() {
   return {{SmokeJet{Vec2::Zero(), 1.0, 0.294}}, 0.0, 0.8e-4};
 }
 
-/// Tuned on a flat closed hand whose skin is 0.2 m above the array, so that all press with the same
-/// force (docs/design/scenes.md).
+/// Scenes tuned to press with the same force on a flat closed hand with its skin 0.2 m above the
+/// array (docs/design/scenes.md).
 std::vector<Scene> make_scenes() {
   constexpr double kAside = 24.2_mm, kAround = 30.6_mm;
-  // a hand is wider at its knuckles than at its heel, and turns jets outwards there
+  // a hand is wider at the knuckles than at the heel, and deflects jets outwards there
   constexpr double kHeel = kAside + 0.86_mm, kKnuckles = kAside - 0.86_mm;
   const double x = kAround * std::cos(kPi / 6.0), y = 0.5 * kAround;
   const std::vector<Vec2> two = {{-kAside, 0}, {kAside, 0}};
   const std::vector<Vec2> three = {{-x, -y}, {x, -y}, {0, kAround}};
   const std::vector<Vec2> four = {
       {-kHeel, -kAside}, {-kKnuckles, kAside}, {kHeel, -kAside}, {kKnuckles, kAside}};
-  // one and four have the same full scale: the same force is then played with the same strength
+  // one and four plumes have the same full scale, so that the same force gives the same output
   return {{"one-plume", "One wide plume", wide_plume(), 0.11, {1, 88e-4, kForce}},
           {"two-plumes", "Two thin plumes", thin_plumes(two, 0.58), 0.17, {2, 0.0, kForce}},
           {"three-plumes", "Three thin plumes", thin_plumes(three, 0.516), 0.12, {3, 0.0, kForce}},
@@ -68,7 +69,7 @@ std::vector<Scene> make_scenes() {
           {"ring", "A ring of six plumes", ring_of_plumes(), 0.17, {}},
           {"pulsing", "A pulsing plume", pulsing_plume(), 0.36, {}, {1.0, 0.9}},
           {"wind", "Gusts of wind", wind(), 0.10, {}, {0.4, 0.4}},
-          // ½ρv² of a palm at 0.65 m/s
+          // ½ρv² for a palm at 0.65 m/s
           {"still-air", "Still air", {}, 0.25, {}}};
 }
 

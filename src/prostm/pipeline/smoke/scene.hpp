@@ -1,5 +1,5 @@
 #pragma once
-/// The scenes that a hand is held into, by name.
+/// The scenes of smoke, by name.
 
 #include <span>
 #include <string_view>
@@ -9,8 +9,7 @@
 
 namespace prostm {
 
-/// How jets swell and fall: their speed is multiplied by 1 + depth sin(2π rate t), t from the
-/// start.
+/// Pulsation of jets: their speed is multiplied by 1 + depth sin(2π rate t), with t from the start.
 struct ScenePulse {
   double rate = 0.0;   ///< [Hz]
   double depth = 0.0;  ///< 0 to 1; 0: steady
@@ -19,7 +18,7 @@ struct ScenePulse {
 struct Scene {
   std::string_view name;   ///< in files and on the command line
   std::string_view label;  ///< for people
-  /// as it blows on a hand of average size whose palm joint is above the array's centre, fingers
+  /// inflow for a hand of average size with its palm joint above the array's centre and fingers
   /// towards +y
   SmokeInflow smoke;
   double full_scale_pressure = 0.0;  ///< target pressure that maps to full output [Pa]
@@ -27,15 +26,15 @@ struct Scene {
   ScenePulse pulse = {};
 };
 
-/// In the order in which to show them.
+/// Returns all scenes in display order.
 std::span<const Scene> scenes();
 
-/// @throws std::invalid_argument that lists the names for any other.
+/// Returns a scene. @throws std::invalid_argument for an unknown name, listing the names.
 const Scene& scene_from_name(std::string_view name);
 
-/// Sets `out` to the flow at that place. The viscosity goes with the square of the size, so that
-/// jets of another size keep as far apart over the same height. Allocates nothing if `out` has held
-/// as many jets before.
+/// Sets `out` to the inflow at a place. The viscosity is scaled by the square of the size, so that
+/// jets stay separate over the same height. Does not allocate if `out` has held as many jets
+/// before.
 void move_to(const ScenePlace& place, const SmokeInflow& smoke, SmokeInflow& out);
 
 }  // namespace prostm

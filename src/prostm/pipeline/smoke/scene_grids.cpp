@@ -9,7 +9,7 @@
 namespace prostm {
 namespace {
 
-// coarsest first; multiples of 8 halve evenly three times in a V-cycle
+// coarsest first; multiples of 8 can be halved three times in a V-cycle
 constexpr std::array<int, 5> kGrids = {32, 40, 48, 56, 64};
 
 struct SceneShares {
@@ -18,7 +18,7 @@ struct SceneShares {
 };
 // passed_updates / judged_updates of
 //   prostm run --scene SCENE --grid CELLS --hand study --seconds 30 --stepped
-// The first two seconds, in which the air comes up to the hand, do not pass.
+// Updates of the first two seconds, while the air rises to the hand, do not pass.
 constexpr std::array<SceneShares, 4> kShares = {{
     {"one-plume", {0.91, 0.00, 0.92, 0.92, 0.92}},
     {"two-plumes", {0.01, 0.00, 0.95, 0.95, 0.95}},
@@ -30,7 +30,8 @@ bool has_stimulus(std::string_view scene) {
   return scene_from_name(scene).stimulus.maxima > 0;
 }
 
-/// Whether everything that the stimulus depends on, except the grid, is as it was measured.
+/// Whether all settings that affect the stimulus, except the grid, have their values of the
+/// measurement.
 bool is_as_measured(const PipelineSettings& settings) {
   const PipelineSettings defaults;
   FluidSettings fluid = settings.fluid;
@@ -38,7 +39,7 @@ bool is_as_measured(const PipelineSettings& settings) {
   JetSettings jets = settings.jets;
   jets.place = defaults.jets.place;
   FluidPressureSettings pressure = settings.fluid_pressure;
-  pressure.parts = defaults.fluid_pressure.parts;  // computed beside the pressure that is felt
+  pressure.parts = defaults.fluid_pressure.parts;  // does not affect the pressure that is felt
   const StudyHandSettings &hand = settings.study_hand, &usual = defaults.study_hand;
   return fluid == defaults.fluid && jets == defaults.jets && settings.box == defaults.box &&
          pressure == defaults.fluid_pressure && settings.contact == defaults.contact &&

@@ -1,5 +1,5 @@
 #pragma once
-/// Grids of the smoke that keep the stimulus of a scene, as measured on the held study hand.
+/// Grids of the smoke that keep the stimulus of a scene, measured on the held study hand.
 
 #include <cstdint>
 #include <optional>
@@ -10,29 +10,29 @@
 
 namespace prostm {
 
-/// Least share of updates with the scene's stimulus at a grid that is recommended.
+/// Smallest share of updates with the scene's stimulus for a grid to be recommended.
 inline constexpr double kKeptShare = 0.8;
 
 /// Effect of a grid on the stimulus of a scene.
 enum class GridEffect : std::uint8_t {
   Keeps,   ///< the held study hand gets the stimulus, or the scene has none
-  Loses,   ///< it gets the stimulus in less than kKeptShare of the updates
-  Unknown  ///< never measured: other settings than the defaults, or another grid
+  Loses,   ///< the hand gets the stimulus in less than kKeptShare of the updates
+  Unknown  ///< not measured: other settings than the defaults, or another grid
 };
 
-/// Effect of `cells` along an edge, with the other settings as they are.
+/// Effect of `cells` along an edge, with all other settings unchanged.
 GridEffect grid_effect(const PipelineSettings& settings, int cells);
 
-/// Measured grids below `cells` that keep the stimulus of a scene, finest first; for a scene
-/// without a stimulus all of them. @throws std::invalid_argument for an unknown scene.
+/// Measured grids below `cells` that keep the stimulus of a scene, finest first; all of them for a
+/// scene without a stimulus. @throws std::invalid_argument for an unknown scene.
 std::vector<int> coarser_grids(std::string_view scene, int cells);
 
-/// The coarsest measured grid above `cells` that keeps the stimulus of a scene with one, or else
-/// the finest measured.
+/// The coarsest measured grid above `cells` that keeps the scene's stimulus, or the finest measured
+/// grid if none does.
 int finer_grid(std::string_view scene, int cells);
 
 /// Share of updates in which the held study hand gets the stimulus of a scene with default
-/// settings, over a run of 30 s; nothing for a scene without a stimulus or a grid that was not
+/// settings, over a run of 30 s; nothing for a scene without a stimulus, or a grid that was not
 /// measured.
 std::optional<double> stimulus_share(std::string_view scene, int cells);
 

@@ -17,21 +17,22 @@ namespace {
 
 constexpr std::array<WorldQuantity, 2> kQuantities = {
     {{.name = "mean_relative_divergence",
-      .help = "What the fluid's pressure solve left, on the mean.",
+      .help = "Mean residual divergence of the fluid's pressure solve, relative.",
       .words = "the solver left {} of the divergence"},
      {.name = "mean_pressure_error",
-      .help = "Estimated error of the fluid's pressure beside hands, relative, on the mean.",
-      .words = "an error of about {} % in the pressure beside hands",
+      .help = "Mean estimated relative error of the fluid's pressure at hands.",
+      .words = "an error of about {} % in the pressure at the hand",
       .words_scale = 100.0}}};
 
-/// The pressure of hands' own movement, found in air that nothing blows, and the smoke's, the rest.
+/// Splits the pressure: the part of the hands' own movement is computed in still air; the smoke's
+/// part is the remainder.
 struct PartsApart {
   PartsApart(const PipelineSettings& settings, WorkerPool& pool)
       : still_air(settings.fluid, SmokeInflow(), pool),
         smoke(settings.fluid_pressure, still_air.grid()),
         movement(settings.fluid_pressure, still_air.grid()),
         rest(still_air.grid().cell_count()) {}
-  /// Takes the pressure among the same hands, with smoke in `all`.
+  /// Splits the pressure of `all`, the fluid with smoke around the same hands.
   void take(const Fluid& all, double dt) {
     for (FluidPressure* part : {&smoke, &movement}) part->move_to(all.grid().p_DF);
     const std::span<const float> own = still_air.pressure();
@@ -43,7 +44,7 @@ struct PartsApart {
 
   Fluid still_air;
   FluidPressure smoke, movement;
-  std::vector<float> rest;  // the smoke's, a value a cell [Pa]
+  std::vector<float> rest;  // the smoke's part, one value per cell [Pa]
 };
 
 class SmokeWorld final : public World {
@@ -121,7 +122,7 @@ class SmokeWorld final : public World {
     if (apart_ && smoke->apart_ && smoke->apart_->still_air.grid() == apart_->still_air.grid())
       apart_->still_air.copy_state(smoke->apart_->still_air);
     if (&smoke->scene_ != &scene_) return;
-    // a place and gains that were found stay, whatever else was changed
+    // keeps the place and the gains found so far, whatever else has changed
     if (smoke->settings_.place == settings_.place) {
       waits_for_hand_ = smoke->waits_for_hand_;
       blow_at(smoke->place_);
@@ -137,7 +138,7 @@ class SmokeWorld final : public World {
   }
 
  private:
-  /// Copies the air of the same grid, wherever that is.
+  /// Copies the air if the grids agree except for their position.
   void continue_from(const Fluid& before) {
     GridShape there = fluid_.grid();
     there.p_DF = before.grid().p_DF;
@@ -152,7 +153,7 @@ class SmokeWorld final : public World {
     move_to(place, scene_.smoke, placed_);
     changed_ = true;
   }
-  /// Takes over a new place, new gains and the pulse.
+  /// Applies the place, the gains and the pulse to the jets.
   void blow() {
     const ScenePulse& pulse = scene_.pulse;
     const double swell = 1.0 + pulse.depth * std::sin(2.0 * kPi * pulse.rate * time_);
@@ -166,19 +167,19 @@ class SmokeWorld final : public World {
 
   const Scene& scene_;
   JetSettings settings_;
-  bool waits_for_hand_;  // to blow under it
+  bool waits_for_hand_;  // before placing the jets under it
   ScenePlace place_;
   Fluid fluid_;
   BoxFollower follower_;
-  HandFrame hands_;  // of the last targets
+  HandFrame hands_;  // hands of the last target
   FluidPressure pressure_;
-  SmokeInflow placed_, blown_;  // under the hand, and with the trim's gains
+  SmokeInflow placed_, blown_;  // placed_: at the place; blown_: also with gains and pulse
   JetTrim trim_;
   PressurePart part_;
   std::optional<PartsApart> apart_;
-  std::array<NamedPressure, 2> parts_ = {};  // of apart_
+  std::array<NamedPressure, 2> parts_ = {};  // parts of apart_
   double time_ = 0.0;                        // since the scene began [s]
-  bool changed_ = false;                     // since the fluid was told
+  bool changed_ = false;  // jets changed since they were last passed to the fluid
 };
 
 }  // namespace

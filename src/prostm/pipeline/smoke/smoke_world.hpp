@@ -1,5 +1,5 @@
 #pragma once
-/// Smoke that blows at the hands, as a world.
+/// The world of smoke blowing at the hands.
 
 #include <memory>
 #include <span>
@@ -18,7 +18,7 @@ bool is_smoke(const PipelineSettings& settings);
 /// Returns the scenes of smoke/scene.hpp.
 std::span<const WorldScene> smoke_world_scenes();
 
-/// Makes the smoke of the settings' scene. @param pool outlives it.
+/// Makes the smoke of the settings' scene. @param pool must outlive the world.
 /// @throws std::invalid_argument with a sentence.
 std::unique_ptr<World> make_smoke_world(const PipelineSettings& settings, WorkerPool& pool);
 

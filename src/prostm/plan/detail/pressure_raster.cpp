@@ -32,13 +32,13 @@ void PressureRaster::set(const TargetField& target, double maximum) {
 }
 
 PressureSample PressureRaster::sample(const Vec2& x) const {
-  // beyond two cells off the raster all sixteen neighbours are zero
+  // more than two cells off the raster, all sixteen neighbours are zero
   const double u = x.x() / cell_, v = x.y() / cell_;
   if (!(u > -2.0 && u < cols_ + 1.0 && v > -2.0 && v < rows_ + 1.0)) return {};
   const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
   const CubicWeights a(u - i), b(v - j);
 
-  // the 4×4 neighbourhood; near the border a copy of it, with zeros for what lies beyond
+  // the 4×4 neighbourhood; near the border a copy, with zeros beyond the raster
   std::array<double, 16> copy;
   const double* p = copy.data();
   std::ptrdiff_t stride = 4;

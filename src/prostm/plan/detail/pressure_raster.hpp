@@ -23,7 +23,7 @@ class PressureRaster {
  public:
   explicit PressureRaster(std::size_t max_cells) { value_.reserve(max_cells); }
 
-  /// Takes over p*/maximum of the skin cells. Allocates nothing up to max_cells. @pre maximum > 0,
+  /// Copies p*/maximum of the skin cells. Allocates nothing up to max_cells. @pre maximum > 0,
   /// sizes agree.
   void set(const TargetField& target, double maximum);
 

@@ -27,8 +27,8 @@ HWY_INLINE V ones(const std::uint8_t* mask) {
   return hn::PromoteTo(D(), hn::Min(hn::PromoteTo(d32, bytes), hn::Set(d32, 1)));
 }
 
-/// Returns the bits of a double as an integer, which orders non-negative doubles as their values
-/// do; −0 counts as 0.
+/// Returns the bits of a double as an integer, which has the same order as non-negative doubles; −0
+/// counts as 0.
 std::int64_t bits_of(double value) {
   return std::bit_cast<std::int64_t>(value + 0.0);
 }

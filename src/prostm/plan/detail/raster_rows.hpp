@@ -12,15 +12,15 @@ namespace prostm::planning {
 double checked_maximum(std::span<const double> values, std::span<const std::uint8_t> skin,
                        double most);
 
-/// Sums over some rows of a raster, column by column; only cells with skin count.
+/// Sums over some rows of a raster, column by column; only cells with skin are included.
 struct ColumnSums {
   std::span<double> value;
   std::span<double> count;  ///< number of cells
   std::span<double> row;    ///< sum of their row indices
 };
 
-/// Sets the sums over rows [begin, end). @param values, skin the whole raster, row by row, with as
-/// many columns as there are sums. @pre values are finite.
+/// Computes the sums over rows [begin, end). @param values, skin the whole raster in row-major
+/// order, with as many columns as there are sums. @pre values are finite.
 void sum_rows(std::span<const double> values, std::span<const std::uint8_t> skin, int begin,
               int end, const ColumnSums& sums);
 

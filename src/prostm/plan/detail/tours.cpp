@@ -139,7 +139,7 @@ boost::container::static_vector<Leaf, kMaxClusters> split_tours(const Clusters& 
     const std::span<std::uint8_t> members(tour.data(), tour.size());
     const double length = shortest_tour(distance, members, seed);
 
-    // cut the set in two at the midpoint of its bounds
+    // split the set at the midpoint of its bounds
     Tour low, high;
     if (length > max_length) {
       const Vec2 direction = principal_direction(clusters, members);

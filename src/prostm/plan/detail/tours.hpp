@@ -27,7 +27,7 @@ class DistanceTable {
 /// Length of the closed tour [mm].
 double tour_length(const DistanceTable& distance, std::span<const std::uint8_t> tour);
 
-/// 2-opt [Croes 1958]: reverses stretches of the closed tour while that shortens it.
+/// 2-opt [Croes 1958]: reverses sections of the closed tour while that shortens it.
 void two_opt(const DistanceTable& distance, std::span<std::uint8_t> tour);
 
 /// Finds the shortest of a few 2-opt optima, from the order given and from seeded random orders.
@@ -52,8 +52,8 @@ boost::container::static_vector<Leaf, kMaxClusters> split_tours(const Clusters& 
                                                                 std::uint64_t seed);
 
 /// Samples the closed tour at x.size() equal arc lengths [mm]. Clusters within kThinWidth of a line
-/// (or only one or two) enclose nothing. They get an ellipse about them, since a path that runs
-/// back on itself would start with coinciding samples.
+/// (or only one or two) enclose no area. Their tour is an ellipse about them, since a path that
+/// doubles back on itself would start with coinciding samples.
 void resample_tour(const Clusters& clusters, std::span<const std::uint8_t> tour, std::span<Vec2> x);
 
 }  // namespace prostm::planning

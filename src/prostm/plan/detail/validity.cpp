@@ -10,9 +10,9 @@
 namespace prostm::planning {
 namespace {
 
-constexpr int kPushes = 12;              // 1 mm each, away from the path that is crossed
+constexpr int kPushes = 12;              // pushes of 1 mm away from the crossed path
 constexpr double kShrink = 0.95;         // factor of one shrinking step
-constexpr double kSmallestShare = 0.25;  // least length that shrinking leaves, over the longest
+constexpr double kSmallestShare = 0.25;  // least length after shrinking, over max_length
 
 using Loop = std::span<Vec2>;
 using ConstLoop = std::span<const Vec2>;
@@ -42,8 +42,9 @@ struct Box {
   }
 };
 
-/// Reverses stretches between crossing segments. Each reversal of properly crossing segments
-/// shortens the loop, so this ends; segments that only touch may not get shorter, hence the bound.
+/// Reverses sections between crossing segments. Each reversal of properly crossing segments
+/// shortens the loop, so this terminates; for segments that only touch it may not, hence the bound
+/// on the number of reversals.
 void untangle(Loop loop) {
   const std::size_t n = loop.size();
   std::size_t budget = n * n;
@@ -68,7 +69,7 @@ struct Accepted {
   std::size_t samples, count;
   ConstLoop loop(std::size_t k) const { return x.subspan(k * samples, samples); }
 
-  /// First accepted path that `candidate` crosses, or `count`.
+  /// Returns the first accepted path that `candidate` crosses, or `count`.
   std::size_t first_crossed(ConstLoop candidate) const {
     for (std::size_t k = 0; k < count; ++k) {
       if (count_crossings(loop(k), candidate) > 0) return k;
@@ -80,7 +81,7 @@ struct Accepted {
   }
 };
 
-/// Pushes the path off those that it crosses, 1 mm at a time.
+/// Pushes the path away from those that it crosses, 1 mm at a time.
 bool push_off(const Accepted& accepted, Loop loop) {
   for (int push = 0; push < kPushes; ++push) {
     const std::size_t k = accepted.first_crossed(loop);
@@ -103,8 +104,8 @@ bool shrink_off(const Accepted& accepted, Loop loop, double smallest) {
   return false;
 }
 
-/// Changes `loop` as little as it takes to be valid beside the accepted paths. @return false if
-/// nothing helps.
+/// Makes `loop` valid together with the accepted paths: untangles and shortens it, then pushes it,
+/// shrinks it, or replaces it by a circle, the first that suffices. @return false if none does.
 bool fit(const Accepted& accepted, Loop loop, double max_length) {
   untangle(loop);
   shorten(loop, max_length);
@@ -133,14 +134,14 @@ bool segments_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) 
       std::min(c.y(), d.y()) > std::max(a.y(), b.y()) + kClearance) {
     return false;
   }
-  // each segment has its ends on both sides of the other
+  // they cross if each has its ends on different sides of the other
   const double c_side = cross(b - a, c - a), d_side = cross(b - a, d - a);
   const double a_side = cross(d - c, a - c), b_side = cross(d - c, b - c);
   if (((c_side > 0.0 && d_side < 0.0) || (c_side < 0.0 && d_side > 0.0)) &&
       ((a_side > 0.0 && b_side < 0.0) || (a_side < 0.0 && b_side > 0.0))) {
     return true;
   }
-  // otherwise they are nearest at an end
+  // otherwise the shortest distance is at an end
   return std::min({point_segment_distance2(a, c, d), point_segment_distance2(b, c, d),
                    point_segment_distance2(c, a, b), point_segment_distance2(d, a, b)}) <
          kClearance * kClearance;

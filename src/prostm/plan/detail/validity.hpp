@@ -1,5 +1,5 @@
 #pragma once
-/// Crossings of closed polygons, and paths of a plan made valid. All lengths in mm.
+/// Crossings of closed polygons, and the repair of a plan's paths. All lengths in mm.
 
 #include <span>
 
@@ -7,8 +7,8 @@
 
 namespace prostm::planning {
 
-/// Segments nearer than this count as crossing: 1 µm, far above rounding and far below anything
-/// that is felt [mm].
+/// Distance below which segments count as crossing [mm]: 1 µm, far above rounding errors and far
+/// below what is perceptible.
 inline constexpr double kClearance = 1e-3;
 
 /// Whether segments (a, b) and (c, d) cross, or come nearer than kClearance.
@@ -41,9 +41,9 @@ bool folds_back(std::span<const Vec2> loop);
 bool is_simple(std::span<const Vec2> loop);
 
 /// Makes paths valid, the heaviest first. A path that crosses itself is untangled by reversing the
-/// stretch between two crossing segments (2-opt). A path longer than `max_length` is scaled down to
-/// it about its centroid. A path that crosses a heavier one is pushed off it or shrunk (not below a
-/// quarter of `max_length`), and left out if that does not help. Every path that remains is simple,
+/// section between two crossing segments (2-opt). A path longer than `max_length` is scaled down to
+/// it about its centroid. A path that crosses a heavier one is pushed away or shrunk (not below a
+/// quarter of `max_length`), and dropped if that does not help. Every path that remains is simple,
 /// at most `max_length` long and crosses no other; the first always remains.
 /// @param x paths of `samples` points each, by descending mass; the kept ones are moved to the
 /// front. @return the number of paths kept.

@@ -44,7 +44,7 @@ ClosestPoint PathSegments::closest(const Vec2& x) {
   best.segment = last_;
   best.distance2 = project(last_, x, best.along);
   for (std::size_t begin = 0; begin < count_; begin += kRun) {
-    // a run whose box is farther than the best so far holds nothing nearer
+    // skip a run whose box is farther than the best so far
     const Box& box = boxes_[begin / kRun];
     const Vec2 outside = (box.low - x).cwiseMax(x - box.high).cwiseMax(0.0);
     if (outside.squaredNorm() > best.distance2) continue;
@@ -71,7 +71,7 @@ PathSegments::Near PathSegments::near(const Vec2& x, double radius) const {
     distance2[s] = project(s, x, along);
     least = std::min(least, distance2[s]);
   }
-  // from x to a point within the radius, no distance changes by more than the radius
+  // between x and a point within the radius, no distance differs by more than the radius
   const double most = std::sqrt(least) + 2.0 * radius + kRounding;
   Near out;
   for (std::size_t s = 0; s < count_; ++s) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The closest point of a plan's paths or foci, the search behind Eq. (1) and coverage.
+/// Search for the closest point of a plan's paths or foci, used for Eq. (1) and coverage.
 
 #include <algorithm>
 #include <array>
@@ -37,7 +37,7 @@ class PathSegments {
 
   /// Calls visit(cell, closest(its position)) for the cells of the raster's rows from `first` to
   /// `end`, in any order. On rasters much finer than segments it searches tile by tile, among the
-  /// segments that are the closest anywhere in the tile.
+  /// segments that can be closest somewhere in the tile.
   template <class Visit>
   void for_closest(const TargetField& raster, int first, int end, Visit&& visit);
 
@@ -56,7 +56,7 @@ class PathSegments {
   };
   void add(const Vec2& a, const Vec2& b, double pressure_a, double pressure_b);
   double project(std::size_t s, const Vec2& x, double& along) const;
-  /// Returns all segments that can be the closest within `radius` of x, in their order.
+  /// Returns all segments that can be closest to a point within `radius` of x, in ascending order.
   Near near(const Vec2& x, double radius) const;
   ClosestPoint closest(const Near& among, const Vec2& x) const;
 

@@ -10,9 +10,9 @@
 
 namespace prostm {
 
-/// Rendered pressures along a plan's segments that replace its own p_i, e.g. those that are played.
-/// Each segment of each path in turn, then each focus, has one or more values, evenly spaced from
-/// the segment's first point to its second.
+/// Rendered pressures along a plan's segments that replace its own p_i, e.g. the emitted ones. Each
+/// segment of each path in turn, then each focus, has one or more values, evenly spaced from the
+/// segment's first point to its second.
 struct SegmentPressures {
   std::vector<double> pressure;  ///< unit of the target
   std::vector<std::size_t> end;  ///< end of each segment's values in `pressure`
@@ -21,7 +21,8 @@ struct SegmentPressures {
   double at(std::size_t segment, double along) const;
 };
 
-/// The pressures of quasi_static_field(), point by point. Refers to `instead`. Allocates nothing.
+/// Evaluates the field of quasi_static_field() point by point. Keeps a reference to `instead`.
+/// Allocates nothing.
 class QuasiStaticPressure {
  public:
   /// See quasi_static_field().
@@ -31,7 +32,7 @@ class QuasiStaticPressure {
   double at(const ClosestPoint& nearest) const;
 
  private:
-  // for each segment of the patch: its number in the plan, and γ of its path; 1 for a focus
+  // for each segment of the patch: its index in the plan, and γ of its path (1 for a focus)
   struct Origin {
     std::size_t number;
     double gain;

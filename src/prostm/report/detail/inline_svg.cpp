@@ -22,10 +22,10 @@ std::string replaced(std::string_view text, std::string_view what, std::string_v
   }
 }
 
-/// Cuts numbers of an outline after the second digit behind their point.
+/// Truncates the numbers of an outline to two decimals.
 std::string shortened(std::string_view outline) {
   std::string out;
-  int behind = -1;  // digits behind the point so far; below 0 before it
+  int behind = -1;  // decimals so far; negative before the point
   for (const char c : outline) {
     const bool digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
     if (c == '.') {
@@ -40,7 +40,7 @@ std::string shortened(std::string_view outline) {
   return out;
 }
 
-/// The same for all outlines of a picture.
+/// Shortens all outlines of a picture.
 std::string with_short_outlines(std::string_view picture) {
   constexpr std::string_view kBegin = " d=\"";
   std::string out;
@@ -55,7 +55,7 @@ std::string with_short_outlines(std::string_view picture) {
   }
 }
 
-/// The value of an attribute of a tag; empty where it has none.
+/// The value of an attribute of a tag; empty if absent.
 std::string_view attribute(std::string_view tag, std::string_view name) {
   const std::string begin = fmt::format(" {}=\"", name);
   const std::size_t at = tag.find(begin);
@@ -69,13 +69,13 @@ std::string_view attribute(std::string_view tag, std::string_view name) {
 std::string inline_svg(std::string_view picture, std::string_view prefix, std::string_view alt) {
   const std::size_t begin = picture.find("<svg");
   const std::size_t end = begin == picture.npos ? begin : picture.find('>', begin);
-  if (end == picture.npos) throw std::invalid_argument("a picture is no SVG");
+  if (end == picture.npos) throw std::invalid_argument("a picture is not SVG");
   const std::string_view tag = picture.substr(begin, end - begin);
   const std::string_view box = attribute(tag, "viewBox"), width = attribute(tag, "width");
   if (box.empty() || width.empty())
-    throw std::invalid_argument("a picture has no width and no viewBox");
+    throw std::invalid_argument("a picture must have a width and a viewBox");
   std::string inner = with_short_outlines(picture.substr(end + 1));
-  // what holds anyway
+  // remove defaults
   inner = replaced(inner, "stroke:none;fill-rule:nonzero;", "");
   inner = replaced(inner, "fill-opacity:1;", "");
   inner = replaced(inner, " id=\"", fmt::format(" id=\"{}-", prefix));

@@ -1,15 +1,15 @@
 #pragma once
-/// Pictures as parts of an HTML page.
+/// Inline SVG pictures for an HTML page.
 
 #include <string>
 #include <string_view>
 
 namespace prostm::report::detail {
 
-/// Returns the <svg> element of a picture for a page that holds several: its identifiers begin with
-/// `prefix`, its outlines are cut to hundredths, and it names neither namespaces nor what is the
-/// default.
-/// @param alt what it shows. @throws std::invalid_argument: no <svg> element with a viewBox.
+/// Returns the <svg> element of a picture for a page with several: identifiers begin with `prefix`,
+/// outlines are truncated to hundredths, and namespaces and defaults are omitted.
+/// @param alt text description of the picture. @throws std::invalid_argument: no <svg> element with
+/// a viewBox.
 std::string inline_svg(std::string_view picture, std::string_view prefix, std::string_view alt);
 
 }  // namespace prostm::report::detail

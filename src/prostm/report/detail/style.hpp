@@ -1,5 +1,5 @@
 #pragma once
-/// How the page of a report looks, in light, in dark, on a phone and on paper.
+/// Style sheet of a report's page, for light and dark mode, phones and print.
 
 #include <string_view>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Work on rasters by bands of rows. Private to score.
+/// Parallel work on bands of rows of a raster. Private to score.
 
 #include <algorithm>
 #include <array>
@@ -13,8 +13,8 @@ namespace prostm {
 /// Rows of a band.
 inline constexpr std::size_t kBandRows = 16;
 
-/// Calls f(first row, end) for bands of band_rows rows, by the threads of the pool if it is not
-/// null. @pre f writes to places that depend on the rows alone.
+/// Calls f(first row, end) for bands of band_rows rows, in parallel on the pool if it is not null.
+/// @pre f writes only to data of its own rows.
 template <class F>
 void for_bands(WorkerPool* pool, std::size_t rows, F&& f, std::size_t band_rows = kBandRows) {
   const auto bands = static_cast<int>((rows + band_rows - 1) / band_rows);
@@ -29,8 +29,8 @@ void for_bands(WorkerPool* pool, std::size_t rows, F&& f, std::size_t band_rows 
   }
 }
 
-/// Adds up the arrays that f(first, end) returns for bands of band_rows of n, in their order: the
-/// sums are the same for any number of threads.
+/// Sums the arrays that f(first, end) returns for bands of band_rows of n rows, in order, so that
+/// the sums do not depend on the number of threads.
 template <std::size_t kSums, class F>
 std::array<double, kSums> sums_of_bands(WorkerPool* pool, std::size_t n, F&& f,
                                         std::size_t band_rows = kBandRows) {

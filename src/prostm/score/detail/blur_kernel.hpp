@@ -1,12 +1,12 @@
 #pragma once
-/// The inner loop of SkinBlur, by vectors of whatever length the processor has. Private to score.
+/// The inner loop of SkinBlur, vectorised for the processor's vector length. Private to score.
 
 #include <cstddef>
 
 namespace prostm {
 
-/// Places side by side in a strip, and sums along it that are taken at once: each value is loaded
-/// once for all of them.
+/// Width of a strip, and number of sums along it computed at once: each value is loaded once for
+/// all of them.
 inline constexpr std::size_t kStripWidth = 16, kSumsAtOnce = 8;
 
 /// Computes to[j][i] = Σ_k taps[k − j] · from[k][i] for k < count, j < kSumsAtOnce, i <

@@ -19,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, kStripWidth>;
 
 constexpr std::size_t kLanes = hn::MaxLanes(D());
-// vectors of a row at once: the widest come with registers for two
+// vectors of a row processed at once: processors with wide vectors have enough registers for two
 constexpr std::size_t kVectors = kLanes >= 8 && 2 * kLanes <= kStripWidth ? 2 : 1;
 
 void StripSums(const double* taps, const double* from, std::size_t count, double* to) {

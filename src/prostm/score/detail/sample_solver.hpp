@@ -1,5 +1,5 @@
 #pragma once
-/// Drives of one sample of focal points after the other.
+/// Sample-by-sample solver for the drives of focal points.
 
 #include <Eigen/Core>
 #include <span>
@@ -10,8 +10,8 @@
 
 namespace prostm {
 
-/// The sounding focal points of a sample, each with its index; of two within kNearestFoci only the
-/// stronger.
+/// The non-silent focal points of a sample, each with its index; of two within kNearestFoci only
+/// the stronger.
 struct Sounding {
   std::vector<Vec3> p_D;
   std::vector<double> intensity;
@@ -21,17 +21,17 @@ struct Sounding {
   explicit Sounding(std::span<const FocusSample> foci);
 };
 
-/// Solves sample after sample, each from the phases that the focal points had before.
+/// Solves sample after sample, each starting from the previous phases of the focal points.
 class SampleSolver {
  public:
   /// @param array, medium outlive this.
   SampleSolver(const TransducerArray& array, const Medium& medium, const FocusSettings& settings,
                int foci);
 
-  /// @throws std::invalid_argument as propagation_to() and solve_foci() do. @pre a focal point
-  /// sounds
+  /// @throws std::invalid_argument as propagation_to() and solve_foci() do. @pre some focal point
+  /// is not silent
   FocusSolution solve(const Sounding& s);
-  /// Errors of the focal points' shares of the last sample.
+  /// Errors of the focal points' shares in the last sample.
   const Eigen::VectorXd& errors() const { return errors_; }
   /// Returns the acoustic pressure per intensity that a solution reaches with full drives [Pa,
   /// rms].

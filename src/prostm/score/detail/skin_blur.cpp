@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kBlur = 8.5e-3;    // b of skill_8 [m]
 constexpr double kBlurReach = 4.0;  // cut-off of the Gaussian along each axis, in b
-constexpr std::size_t kRowsOfBlur = 4 * kStripWidth;  // of a band
+constexpr std::size_t kRowsOfBlur = 4 * kStripWidth;  // rows of a band
 constexpr std::size_t kTapsBeside = kSumsAtOnce - 1;  // zeros at each end of the kernel
 
 }  // namespace
@@ -67,8 +67,8 @@ std::vector<double> SkinBlur::blur(const std::vector<double>& in) const {
   return out;
 }
 
-/// Blurs the skin of rows from `first` to `end` along columns. The result holds, for each
-/// kStripWidth rows, their values at one column after those at the one before.
+/// Blurs the skin of rows from `first` to `end` along columns. The result is in strips of
+/// kStripWidth rows; each strip is stored column by column.
 std::vector<double> SkinBlur::columns(const std::vector<double>& in, std::size_t first,
                                       std::size_t end) const {
   const std::size_t low = first - std::min(first, reach()), high = std::min(end + reach(), rows_);
@@ -95,7 +95,7 @@ std::vector<double> SkinBlur::columns(const std::vector<double>& in, std::size_t
   return across;
 }
 
-/// Computes the sums at places from `first` on of a strip that holds the places from `low` to
+/// Computes the sums at positions from `first` on, from a strip that contains positions `low` to
 /// `end`.
 void SkinBlur::sums_about(std::size_t first, std::size_t end, const double* strip, std::size_t low,
                           double* to) const {

@@ -12,13 +12,13 @@ namespace prostm {
 /// skin itself, which is computed once.
 class SkinBlur {
  public:
-  /// @param pool shares the work where one is given; it must outlive this.
+  /// @param pool runs the work in parallel if not null; must outlive this.
   explicit SkinBlur(const TargetField& target, WorkerPool* pool = nullptr);
   /// The blurred field, 0 off the skin. @pre field has rows·cols values of the target.
   std::vector<double> of(const std::vector<double>& field) const;
 
  private:
-  std::size_t reach() const;  // of the kernel, in cells
+  std::size_t reach() const;  // half-width of the kernel, in cells
   std::vector<double> blur(const std::vector<double>& in) const;
   std::vector<double> columns(const std::vector<double>& in, std::size_t first,
                               std::size_t end) const;
@@ -26,8 +26,8 @@ class SkinBlur {
                   double* to) const;
 
   std::size_t rows_, cols_;
-  std::vector<double> taps_;        // of the kernel along an axis, zeros at both ends
-  std::vector<double> skin_, sum_;  // 1 on skin; the blur of that
+  std::vector<double> taps_;        // kernel along an axis, padded with zeros at both ends
+  std::vector<double> skin_, sum_;  // 1 on skin; its blur
   WorkerPool* pool_;
 };
 

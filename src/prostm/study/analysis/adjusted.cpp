@@ -75,11 +75,11 @@ std::string in_words(std::span<const AdjustedResult> results, double level) {
           of.participants.size(), *of.deviation, 100.0 * level, of.interval->low,
           of.interval->high);
     } else {
-      text += fmt::format(" for the only participant, {}, which says nothing of other people. ",
+      text += fmt::format(" for the only participant, {}, which says nothing about other people. ",
                           of.participants.front().participant);
     }
   }
-  return text + "Intervals are over participants, whose means count once each.";
+  return text + "Intervals are over participants; each participant's mean counts once.";
 }
 
 }  // namespace prostm

@@ -12,7 +12,7 @@
 namespace prostm {
 namespace {
 
-/// Names in the order in which they come first.
+/// Names in order of first appearance.
 template <class Name>
 std::vector<std::string> names_of(std::span<const Answer> answers, const Name& name) {
   std::vector<std::string> out;
@@ -26,10 +26,10 @@ std::string quoted(const std::string& name) {
   return '"' + shown_name(name) + '"';
 }
 
-/// Each participant's right answers, by name.
+/// Each participant's score, by name.
 using Scores = std::map<std::string, Proportion>;
 
-/// @param scene empty: all.
+/// @param scene empty: all scenes.
 bool belongs(const Answer& a, const std::string& method, const std::string& scene) {
   return a.method == method && (scene.empty() || a.scene == scene);
 }
@@ -96,8 +96,8 @@ Comparison compare(const MethodResult& a, const MethodResult& b, Groups groups,
   return out;
 }
 
-/// Refuses answers of which a participant lacks a scene: shares of right answers over all scenes
-/// would mix what is hard with who was asked.
+/// Checks that every participant has every scene; otherwise shares over all scenes would confound
+/// difficulty with participants.
 void require_scenes(std::span<const Answer> answers, const std::vector<std::string>& methods,
                     const std::vector<std::string>& scenes) {
   for (const std::string& method : methods) {
@@ -124,7 +124,7 @@ Groups groups_of(std::span<const Answer> answers, const std::vector<std::string>
     if (methods_had == had && (had == 1 || had == methods.size())) continue;
     throw InputError("participant " + quoted(participant) + " has " + std::to_string(methods_had) +
                      " of " + std::to_string(methods.size()) +
-                     " methods: each must have all of them, or each one");
+                     " methods: each must have all of them, or each only one");
   }
   return had == 1 ? Groups::Between : Groups::Within;
 }
@@ -136,13 +136,13 @@ std::vector<ThresholdResult> thresholds_of(std::span<const Answer> answers,
       std::count_if(answers.begin(), answers.end(), [](const Answer& a) { return !!a.level; });
   if (with_level == 0) {
     if (!settings.guess && !settings.lapse) return {};
-    throw InputError("guess and lapse belong to answers with levels, and there is no level");
+    throw InputError("guess and lapse need answers with levels, and there is no level");
   }
   if (with_level != std::ssize(answers))
-    throw InputError("some answers have a level and others not: all must have one, or none");
+    throw InputError("some answers have a level and others do not: all must have one, or none");
   const bool is_felt = answers.front().kind == AnswerKind::Felt;
   if (settings.fit_lapse && settings.lapse)
-    throw InputError("lapse is given, and is to be fitted; leave one of them out");
+    throw InputError("lapse cannot be both given and fitted; leave one of them out");
   settings.guess = settings.guess.value_or(is_felt ? 0.0 : settings.chance);
   constexpr double kMostGuess = 0.9, kMostWithFittedLapse = 0.75;
   require_between("guess", *settings.guess, 0.0,
@@ -155,7 +155,7 @@ std::vector<ThresholdResult> thresholds_of(std::span<const Answer> answers,
   return fit_thresholds(answers, {*settings.guess, settings.lapse, settings.level, settings.seed});
 }
 
-/// Participants who have trials of a method in a scene, and answered none of them.
+/// Participants who answered none of their trials of a method in a scene.
 std::vector<std::string> without_answers(std::span<const Answer> trials) {
   std::map<std::tuple<std::string, std::string, std::string>, int> answered;
   for (const Answer& a : trials) answered[{a.participant, a.method, a.scene}] += a.answered ? 1 : 0;
@@ -167,7 +167,7 @@ std::vector<std::string> without_answers(std::span<const Answer> trials) {
   return out;
 }
 
-/// The trials that are analysed: those with an answer, of participants who are not left out.
+/// The trials to analyse: those with an answer, of participants who are not left out.
 std::vector<Answer> answered(std::span<const Answer> trials,
                              const std::vector<std::string>& left_out) {
   std::vector<Answer> out;
@@ -218,7 +218,7 @@ Analysis analyse(std::span<const Answer> trials, const AnalysisSettings& setting
   Analysis out;
   out.missing = missing_answers(trials);
   if (!out.missing.empty()) out.left_out = without_answers(trials);
-  std::vector<Answer> kept;  // only where some trials are left out
+  std::vector<Answer> kept;  // used only if trials are left out
   if (!out.missing.empty()) kept = answered(trials, out.left_out);
   const std::span<const Answer> answers =
       out.missing.empty() ? trials : std::span<const Answer>(kept);
@@ -230,8 +230,8 @@ Analysis analyse(std::span<const Answer> trials, const AnalysisSettings& setting
   if (std::any_of(answers.begin(), answers.end(),
                   [&](const Answer& a) { return a.kind != out.kind; })) {
     throw InputError(
-        "answers are of several kinds, from studies with other tasks; analyse those "
-        "of each study alone");
+        "answers are of several kinds, from studies with different tasks; analyse each "
+        "study separately");
   }
   out.groups = groups_of(answers, methods);
   out.participants = names_of(answers, [](const Answer& a) { return a.participant; });

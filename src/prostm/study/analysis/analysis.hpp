@@ -14,73 +14,73 @@
 namespace prostm {
 
 struct AnalysisSettings {
-  double chance = 0.5;     ///< share of right answers that guessing makes, 0..1
-  double level = 0.95;     ///< of intervals, 0..1; a test is significant below 1 − level
-  double power = 0.8;      ///< for which participants are planned, 0..1
-  std::uint64_t seed = 1;  ///< of random splits, where there are too many to take all
-  /// γ and λ of psychometric functions, 0..0.9 and 0..0.5; default: chance, or 0 of answers of kind
-  /// Felt, and kLapse
+  double chance = 0.5;     ///< share of right answers when guessing, 0..1
+  double level = 0.95;     ///< confidence level, 0..1; a test is significant if p < 1 − level
+  double power = 0.8;      ///< power used to compute the participants needed, 0..1
+  std::uint64_t seed = 1;  ///< random seed, used if there are too many splits to count all
+  /// γ and λ of psychometric functions, 0..0.9 and 0..0.5; default: γ = chance, or 0 for answers of
+  /// kind Felt, and λ = kLapse
   std::optional<double> guess = {}, lapse = {};
-  bool fit_lapse = false;  ///< λ is fitted to each function's answers, from 0 to kMostLapse
+  bool fit_lapse = false;  ///< fit λ to each function's answers, between 0 and kMostLapse
 };
 inline constexpr double kLapse = 0.02;
 
-/// How one method did in one scene, or in all.
+/// The result of one method in one scene, or in all.
 struct MethodResult {
   std::string method;
   Proportion correct;                   ///< over all answers
-  Interval interval;                    ///< Wilson's, as if answers were independent
-  double p_chance = 1.0;                ///< of guessing, exact
-  std::vector<double> of_participants;  ///< each one's share of right answers, in order of names
+  Interval interval;                    ///< Wilson's, assuming independent answers
+  double p_chance = 1.0;                ///< against guessing, exact
+  std::vector<double> of_participants;  ///< shares of right answers, sorted by name
   std::optional<TestResult> dispersion;
-  std::optional<Sensitivity> sensitivity;  ///< where questions are known and were of both kinds
+  std::optional<Sensitivity> sensitivity;  ///< if questions are known and both kinds occurred:
+                                           ///< about the stimulus, and about another
 };
 
-/// A second method against the first in one scene, or in all.
+/// Comparison of two methods in one scene, or in all.
 struct Comparison {
   std::string first, second;
   TestResult pooled_z;    ///< over answers
   double fisher_p = 1.0;  ///< over answers, exact
   /// over participants; nothing with fewer than two with each method
   std::optional<Permutation> permutation;
-  std::optional<TestResult> t;  ///< over participants: Welch's, or of pairs
+  std::optional<TestResult> t;  ///< over participants: Welch's, or paired
   std::optional<double> d;      ///< effect size over participants
-  std::optional<int> needed;    ///< participants that would show this effect, of a group or in all
+  std::optional<int> needed;    ///< participants needed to show this effect, per group or in total
 };
 
-/// All of one scene.
+/// The results of one scene.
 struct SceneResult {
   std::string scene;  ///< empty: all scenes
   std::vector<MethodResult> methods;
-  std::vector<Comparison> comparisons;  ///< of every pair of methods
+  std::vector<Comparison> comparisons;  ///< for every pair of methods
 };
 
-/// Trials of one method in one scene that have no answer.
+/// Trials without an answer of one method in one scene.
 struct MissingAnswers {
   std::string method, scene;
   int missing = 0, trials = 0;
-  int participants = 0;  ///< who left some out
-  /// share of right answers if the missing ones were all wrong, and if all were right
+  int participants = 0;  ///< participants with missing answers
+  /// shares of right answers if all missing ones were wrong, and if all were right
   Interval if_answered;
 };
 
 struct Analysis {
   AnalysisSettings settings;
-  AnswerKind kind = AnswerKind::Right;  ///< of kind Felt, "correct" is for the level
+  AnswerKind kind = AnswerKind::Right;  ///< for kind Felt, "correct" means for the level
   Groups groups = Groups::Between;
   std::vector<std::string> participants;
-  std::vector<MissingAnswers> missing;      ///< of all methods and scenes, if any answer is missing
-  std::vector<std::string> left_out;        ///< participants without any answer to some scene
-  std::vector<SceneResult> scenes;          ///< all scenes together first
-  std::vector<ThresholdResult> thresholds;  ///< where answers have levels
+  std::vector<MissingAnswers> missing;  ///< for all methods and scenes, if any answer is missing
+  std::vector<std::string> left_out;    ///< participants without any answer to some scene
+  std::vector<SceneResult> scenes;      ///< first all scenes together, then each scene
+  std::vector<ThresholdResult> thresholds;  ///< if answers have levels
 };
 
-/// Methods and scenes stand in the order in which the answers have them first. Trials without an
-/// answer are counted and left out; so is a participant who answered none of the trials of a method
-/// in a scene. @throws InputError: no answer, some participants with one method and others with
-/// several, a scene that a participant has no trials of, a level that some answers lack, guess or
-/// lapse without levels, answers of several kinds. @throws std::invalid_argument: a setting out of
-/// its bounds.
+/// Analyses answers. Methods and scenes are in order of first appearance. Trials without an answer
+/// are counted and left out; so is a participant who answered none of the trials of a method in a
+/// scene. @throws InputError: no answer, some participants with one method and others with several,
+/// a participant without trials of some scene, some answers without a level, guess or lapse without
+/// levels, answers of several kinds. @throws std::invalid_argument: a setting out of bounds.
 /// @pre answers are not of kind Adjusted.
 Analysis analyse(std::span<const Answer> answers, const AnalysisSettings& settings = {});
 
@@ -88,10 +88,10 @@ Analysis analyse(std::span<const Answer> answers, const AnalysisSettings& settin
 std::vector<MissingAnswers> missing_answers(std::span<const Answer> answers);
 
 /// Sentences about trials without an answer; empty if there are no such trials.
-/// @param kind of the answers.
+/// @param kind the kind of the answers.
 std::string in_words(std::span<const MissingAnswers> missing, AnswerKind kind);
 
-/// A paragraph in plain words: what the data support, what they do not, and why.
+/// Describes in plain words what the data support, what they do not, and why.
 std::string in_words(const Analysis& analysis);
 /// "p = 0.012", or "p < 0.001".
 std::string p_in_words(double p);

@@ -1,5 +1,5 @@
 #pragma once
-/// An answer of a participant, as the analysis takes it.
+/// An answer of a participant, as input to the analysis.
 
 #include <optional>
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace prostm {
 
-/// The run that an answer is from; each part is empty where it is not known.
+/// The run of an answer; unknown fields are empty.
 struct RunFacts {
-  std::string protocol;  ///< checksum of all of it
+  std::string protocol;  ///< checksum of the whole protocol
   std::string version, device, array, hand;
 
   bool operator==(const RunFacts&) const = default;
@@ -20,18 +20,16 @@ struct RunFacts {
 struct Answer {
   std::string participant, method;
   std::string scene;                 ///< the stimulus
-  bool correct = false;              ///< of kind Felt: for the level
-  std::string question = {};         ///< the scene that was asked for; empty where it is not known
-  bool yes = false;                  ///< the answer to it
-  std::string trial = {};            ///< empty where it is not known
-  std::optional<double> level = {};  ///< of the stimulus, where it was varied
+  bool correct = false;              ///< for kind Felt: for the level
+  std::string question = {};         ///< the scene in question; empty if unknown
+  bool yes = false;                  ///< the answer to the question
+  std::string trial = {};            ///< empty if unknown
+  std::optional<double> level = {};  ///< level of the stimulus, if it was varied
   AnswerKind kind = AnswerKind::Right;
-  bool answered =
-      true;  ///< false: no answer was given, and correct, question and yes are not known
-  std::optional<double> response_s = {};  ///< time to the answer [s], where it is known
-  std::string stimulus = {};              ///< checksum of its settings, where it is known
-  std::string gate =
-      {};  ///< of the stimulus: "pass", "fail", "anyway"; empty where it was not asked
+  bool answered = true;  ///< false: no answer was given; correct, question and yes are unknown
+  std::optional<double> response_s = {};  ///< response time [s], if known
+  std::string stimulus = {};              ///< checksum of its settings, if known
+  std::string gate = {};  ///< of the stimulus: "pass", "fail", "anyway"; empty if not evaluated
   RunFacts run = {};
 
   bool operator==(const Answer&) const = default;

@@ -35,8 +35,8 @@ std::map<std::string, Score> scores_of(std::span<const Answer> answers) {
   return out;
 }
 
-/// The trials of a participant: scene and question, each combination as often as the others, as far
-/// as their number allows.
+/// The trials of a participant: scene and question, with all combinations as equally frequent as
+/// the number of trials allows.
 std::vector<std::pair<std::size_t, std::size_t>> shuffled_trials(int trials, Random& random) {
   std::vector<std::pair<std::size_t, std::size_t>> out;
   for (int i = 0; i < trials; ++i) {

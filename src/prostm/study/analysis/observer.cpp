@@ -17,7 +17,7 @@ double dot(const Percept& a, const Percept& b) {
 
 void require_template(const Percept& percept) {
   if (percept.empty() || !std::ranges::all_of(percept, [](double v) { return std::isfinite(v); }))
-    throw std::invalid_argument("a template must have numbers, and all must be finite");
+    throw std::invalid_argument("a template must not be empty, and all its numbers must be finite");
 }
 
 }  // namespace
@@ -27,7 +27,7 @@ TemplateObserver::TemplateObserver(const Percept& first, const Percept& second,
   require_template(first);
   require_template(second);
   if (first.size() != second.size())
-    throw std::invalid_argument("the two templates must have as many numbers");
+    throw std::invalid_argument("the two templates must have the same size");
   require_between("local noise", noise.local, 1e-6, 1e6);
   require_between("common noise", noise.common, 0.0, 1e6);
   middle_.resize(first.size());
@@ -39,7 +39,7 @@ TemplateObserver::TemplateObserver(const Percept& first, const Percept& second,
   double largest = 0.0;
   for (const double v : middle_) largest = std::max(largest, std::abs(v));
   if (largest == 0.0) return;
-  // the inverse of (Y3)'s covariance, by the formula of Sherman and Morrison
+  // the inverse of (Y3)'s covariance, by the Sherman-Morrison formula
   const double variance = noise.local * largest * noise.local * largest;
   const double common = noise.common * noise.common;
   const double along = common * dot(middle_, weight_) / (variance + common * dot(middle_, middle_));

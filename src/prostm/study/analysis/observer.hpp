@@ -1,33 +1,33 @@
 #pragma once
-/// A model observer that knows two stimuli by templates and tells them apart by the likelihood
-/// ratio, (Y2) to (Y4) of docs/design/study.md. It is arithmetic on percepts, whatever they are of.
+/// A model observer that distinguishes two stimuli, known from templates, by the likelihood ratio,
+/// (Y2) to (Y4) of docs/design/study.md. It applies to percepts of any kind.
 
 #include <vector>
 
 namespace prostm {
 
-/// Numbers that a stimulus makes an observer feel, e.g. the strength at places of the hand.
+/// The sensation that a stimulus causes, as numbers, e.g. the strength at places of the hand.
 using Percept = std::vector<double>;
 
 /// Standard deviations of an observer's internal noise.
 struct ObserverNoise {
-  double local = 0.0;   ///< of each number, over the largest of the templates' mean; > 0
-  double common = 0.0;  ///< of a factor that all numbers share; 0 or more
+  double local = 0.0;   ///< of each number, over the mean template's largest value; > 0
+  double common = 0.0;  ///< noise of a factor common to all numbers; 0 or more
 };
 
 class TemplateObserver {
  public:
-  /// @throws std::invalid_argument: templates that are empty, differ in size, or hold a number that
-  /// is not finite; noise that is out of its bounds.
+  /// @throws std::invalid_argument: templates that are empty, differ in size or are not finite;
+  /// noise out of bounds.
   TemplateObserver(const Percept& first, const Percept& second, const ObserverNoise& noise);
 
-  /// Distance of the templates in standard deviations of what tells them apart. 0 where they are
-  /// the same.
+  /// Distance of the templates in standard deviations of the decision variable; 0 if they are
+  /// equal.
   double d_prime() const { return d_prime_; }
 
-  /// Logarithm of the likelihood ratio of a percept before its noise, over d′: above 0 it speaks
-  /// for the second stimulus. With the noise it varies with a standard deviation of 1. ∓d′/2 at the
-  /// templates. @pre as many numbers as the templates.
+  /// Log-likelihood ratio of a noise-free percept, over d′: positive for the second stimulus, and
+  /// ∓d′/2 at the templates. Noise adds a standard deviation of 1. @pre the percept has the size of
+  /// the templates.
   double evidence(const Percept& percept) const;
 
  private:
@@ -35,8 +35,8 @@ class TemplateObserver {
   double d_prime_ = 0.0;
 };
 
-/// Chance of a right answer of an observer that guesses in a share `lapse` of its trials.
-/// @param evidence for the stimulus that is there.
+/// Probability of a right answer of an observer that guesses in a share `lapse` of its trials.
+/// @param evidence the evidence for the presented stimulus.
 double chance_of_right(double evidence, double lapse);
 
 }  // namespace prostm

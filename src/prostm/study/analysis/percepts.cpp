@@ -20,9 +20,9 @@ namespace {
 constexpr int kSideways = 7, kTowardsWrist = 8, kTowardsTips = 14;
 constexpr double kFullScalePa = 450.0;  // acoustic pressure of a focal point at intensity 1 [rms]
 constexpr double kSettle = 4.0;         // [s]
-constexpr double kApart = 0.3;          // between moments [s]
+constexpr double kApart = 0.3;          // time between moments [s]
 
-/// A study hand that trembles as a whole: along each axis, two sines of random frequency and phase.
+/// A study hand with a rigid tremor: along each axis, two sines of random frequency and phase.
 class TremblingHand final : public HandSource {
  public:
   TremblingHand(const StudyHandSettings& settings, const ModelHand& hand)

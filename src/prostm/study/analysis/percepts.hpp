@@ -1,6 +1,6 @@
 #pragma once
-/// The percepts that a method makes from a scene on the hand of a participant: what the model
-/// observers of docs/design/study.md (Y2) to (Y6) feel.
+/// Percepts of scenes rendered by a method on a participant's hand, for the model observers of
+/// docs/design/study.md (Y2) to (Y6).
 
 #include <cstdint>
 #include <functional>
@@ -18,36 +18,36 @@
 
 namespace prostm {
 
-/// Standard deviation of the Gaussian that stands for the skin's spatial resolution [m]: the error
-/// with which AM's focal points are localised on the palm [Y-4].
+/// Standard deviation of the Gaussian that models the skin's spatial resolution [m]: the
+/// localisation error for AM focal points on the palm [Y-4].
 inline constexpr double kTouchResolution = 8.5e-3;
-/// Noise of each place. It was chosen so that two of AM's focal points 45 mm apart are told from
-/// two at 15 mm, which feel like one, as well as people do: d′ = 2.64 [Y-5]. A test repeats that.
+/// Noise of each place. It is set so that two AM focal points 45 mm apart are distinguished from
+/// two 15 mm apart, which feel like one, as well as people do: d′ = 2.64 [Y-5]. A test checks this.
 inline constexpr double kTouchNoise = 1.18;
-/// Noise of the strength: the difference just noticed [S-7].
+/// Noise of the strength: the just noticeable difference [S-7].
 inline constexpr double kStrengthNoise = 0.2;
 /// Share of trials in which an observer guesses [Y-3].
 inline constexpr double kObserverLapse = 0.03;
 
-/// One moment of a stimulus.
+/// The percept of one moment of a stimulus.
 struct StimulusPercept {
   Percept skin;           ///< √e of (S7) at places of the hand [m]
   Percept field;          ///< pressure of Eq. (1) at the same places [Pa]
   double strength = 0.0;  ///< √E of (S8) [m]
 };
 
-/// Reads a map of a raster at the places of a hand: a grid of kTouchResolution over palm and
-/// fingers, each place with a Gaussian of that width.
+/// Samples a map of a raster at places of the hand: a grid of spacing kTouchResolution over palm
+/// and fingers, smoothed by a Gaussian of that width.
 /// @param X_DH palm joint: −z to the fingertips, +y dorsal. @param map rows·cols
 Percept at_places(const TargetField& raster, std::span<const double> map, const Pose& X_DH);
 
-/// Plays plans on the array of the settings, and feels them.
+/// Computes percepts of plans played on the array of the settings.
 class StimulusFeeler {
  public:
-  /// @param full_scale of the scene, as for emit_settings() [Pa].
+  /// @param full_scale full scale of the scene, as for emit_settings() [Pa].
   StimulusFeeler(const PipelineSettings& settings, double full_scale);
 
-  /// @param X_DH as for at_places(). All zeros for a plan without pressure, which nobody feels.
+  /// @param X_DH as for at_places(). All zeros for a plan without pressure.
   StimulusPercept feel(const Plan& plan, const TargetFrame& target, const Pose& X_DH);
 
  private:
@@ -58,7 +58,7 @@ class StimulusFeeler {
   WorkerPool pool_;
 };
 
-/// The hand of a simulated participant: `--hand study` of a size, with a tremor of 8 to 12 Hz.
+/// The hand of a simulated participant: `--hand study` with a size, and a tremor of 8 to 12 Hz.
 struct ModelHand {
   double size = 1.0;
   double tremor = 0.025;   ///< rms of its speed [m/s]
@@ -67,13 +67,13 @@ struct ModelHand {
 /// A hand of random size and tremor, (Y6).
 ModelHand random_hand(std::uint64_t seed);
 
-/// Percepts of one scene by each method, moment by moment.
+/// Percepts of one scene with each method, moment by moment.
 struct ScenePercepts {
   std::vector<StimulusPercept> am, pro_stm;
 };
-/// Runs a scene without a clock on a hand until it has settled, and then feels so many moments of
-/// both methods. @param settings their scene, hand and place of jets are replaced. @param progress
-/// is called after each moment; false ends it.
+/// Simulates a scene on a hand, not in real time, until it has settled, and then computes percepts
+/// of `moments` moments with both methods. @param settings scene, hand and position of the jets are
+/// replaced. @param progress called after each moment; returns false to stop.
 ScenePercepts feel_scene(PipelineSettings settings, const std::string& scene, const ModelHand& hand,
                          int moments, const std::function<bool()>& progress);
 

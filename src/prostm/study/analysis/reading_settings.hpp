@@ -12,22 +12,22 @@
 
 namespace prostm {
 
-/// A prefix of participants' names, so that two people with one name are told apart.
+/// Prefix of participants' names, to distinguish people with the same name.
 enum class IdPrefix : std::uint8_t {
-  None,    ///< a name that is in several files is of one person
+  None,    ///< a name in several files is one person
   Folder,  ///< the file's folder
-  File     ///< the file's name, with its folder where that is needed
+  File     ///< the file's name, with its folder if needed
 };
 template <>
 inline constexpr std::array<std::string_view, 3> kNames<IdPrefix> = {"none", "folder", "file"};
 
 /// How files of answers are read.
 struct ReadingSettings {
-  std::string columns;              ///< of tables: "correct=key_resp.corr,method:=am"
+  std::string columns;              ///< column names of tables: "correct=key_resp.corr,method:=am"
   std::vector<std::string> rename;  ///< "participant:OLD=NEW", also method: and scene:
   std::optional<IdPrefix> prefix;   ///< nothing: a name in several files is refused
-  bool merge_spellings = false;     ///< names that differ in spelling alone are one
-  bool pool = false;                ///< answers to different stimuli are taken together
+  bool merge_spellings = false;     ///< treat names that differ only in spelling as one
+  bool pool = false;                ///< combine answers to different stimuli
 };
 
 }  // namespace prostm

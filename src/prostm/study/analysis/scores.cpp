@@ -33,7 +33,7 @@ struct PaperMethod {
   const char* method;
 };
 constexpr std::array kPaperMethods = {PaperMethod{"AM", "am"}, PaperMethod{"STM", "pro-stm"}};
-/// One of its scenes.
+/// One scene of the paper's study.
 struct PaperScene {
   const char* key;
   const char* scene;
@@ -41,7 +41,7 @@ struct PaperScene {
 constexpr std::array kPaperScenes = {PaperScene{"_1plume", "one-plume"},
                                      PaperScene{"_4plume", "four-plumes"}};
 
-/// Adds the answers of all participants who had one method.
+/// Adds the answers of all participants with one method.
 void add_paper_method(const JsonNode& figure, const PaperMethod& of, int trials,
                       std::vector<Answer>& out) {
   const auto column = [&](const char* key) {
@@ -103,11 +103,11 @@ std::vector<Answer> answers_from_paper(std::string_view text, const std::string&
 
 namespace {
 
-/// A column of a tidy table: its name, and its cell of an answer; empty where that is not known.
+/// A column of a tidy table: its name, and its cell for an answer; empty if unknown.
 struct TidyColumn {
   study::Column column;
   std::function<std::string(const Answer&)> cell;
-  bool always = false;  ///< it stands there even if all its cells are empty
+  bool always = false;  ///< written even if all its cells are empty
 };
 
 std::vector<TidyColumn> tidy_columns() {
@@ -174,7 +174,7 @@ std::string tidy_csv(std::span<const Answer> answers) {
 
 namespace {
 
-/// Whether a file is a participant's, by its name.
+/// Whether a file is a participant's, judging by its name.
 bool is_responses(std::string_view path) {
   return path.ends_with(".jsonl");
 }
@@ -189,7 +189,7 @@ class Files {
   std::vector<Answer> take();
 
  private:
-  /// Whether another participant of the roster took the place of the file's, which is noted.
+  /// Whether the file's participant was replaced by another one of the roster; adds a note if so.
   bool was_replaced(const std::string& path, std::span<const RosterEntry> roster);
   void read_one(const std::string& path, const std::string& prefix);
   void refuse_copies(const std::string& path, const std::string& text);
@@ -200,7 +200,7 @@ class Files {
   std::vector<std::string>& notes_;
   std::vector<Answer> all_;
   std::vector<study::StudyFile> studies_;
-  std::map<std::size_t, std::string> file_with_;  // by the hash of its bytes
+  std::map<std::size_t, std::string> file_with_;  // by hash of its content
   std::map<std::string, std::string> file_of_;    // by participant
 };
 
@@ -242,12 +242,12 @@ void Files::refuse_copies(const std::string& path, const std::string& text) {
   }
 }
 
-/// Refuses a table as jsPsych and pandas write it in JSON.
+/// Refuses a table in JSON, as written by jsPsych and pandas.
 void refuse_list(std::string_view text, const std::string& path) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos || text[first] != '[') return;
   throw InputError(
-      fmt::format("{0}: is a list, as jsPsych writes JSON; save the answers as CSV, or convert "
+      fmt::format("{0}: is a JSON list, as written by jsPsych; save the answers as CSV, or convert "
                   "them: python3 -c "
                   "'import pandas; pandas.read_json(\"{0}\").to_csv(\"{0}.csv\", index=False)'",
                   path));
@@ -286,14 +286,14 @@ void Files::add(std::vector<Answer> answers, const std::string& path) {
     throw InputError(fmt::format(
         "participant {} is in {} and in {}; if these are two people, add --prefix folder or "
         "--prefix "
-        "file, which puts it before their names; if one, add --prefix none, or leave a file out",
+        "file, which prefixes their names; if one, add --prefix none, or leave a file out",
         found->first, found->second, path));
   }
   all_.insert(all_.end(), std::make_move_iterator(answers.begin()),
               std::make_move_iterator(answers.end()));
 }
 
-/// Counts the trials that were presented although the gate did not pass.
+/// Notes the number of trials that were presented although the gate did not pass.
 void note_anyway(std::span<const Answer> answers, std::vector<std::string>& notes) {
   std::map<std::string, int> passed_over;
   for (const Answer& a : answers) {
@@ -310,7 +310,7 @@ std::vector<Answer> Files::take() {
   for (const Answer& a : all_) {
     if (a.kind == all_.front().kind) continue;
     throw InputError(
-        fmt::format("participants {} and {} had other tasks; analyse those of each study alone",
+        fmt::format("participants {} and {} had different tasks; analyse each study separately",
                     all_.front().participant, a.participant));
   }
   study::require_same_stimuli(all_, studies_, settings_.pool, notes_);

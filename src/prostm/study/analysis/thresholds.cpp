@@ -12,13 +12,14 @@ namespace {
 
 using Levels = std::map<double, Proportion>;
 
-/// All participants of one method in one scene, by name; those of the empty name are all together.
+/// The answers of one method in one scene, by participant; the empty name stands for all
+/// participants together.
 struct Cell {
   std::string method, scene;
   std::map<std::string, Levels> participants;
 };
 
-/// Cells by the places at which scenes, and then methods, come first.
+/// Cells in the order in which scenes, and then methods, first appear.
 std::vector<Cell> cells_of(std::span<const Answer> answers) {
   std::vector<std::string> methods, scenes;
   const auto place = [](std::vector<std::string>& names, const std::string& name) {
@@ -78,15 +79,15 @@ std::string in_words(NoFit reason, AnswerKind kind) {
     case NoFit::TooFewLevels:
       return "all answers are at one level";
     case NoFit::NotGrowing:
-      return answers + " do not grow with the level, or hardly";
+      return answers + " hardly grow with the level, or not at all";
     case NoFit::Falling:
       return answers + " fall with the level";
     case NoFit::Step:
       return "a step fits as well as any slope";
     case NoFit::BelowLevels:
-      return answers + " are as many as can be at the lowest level already";
+      return answers + " are already at their maximum at the lowest level";
     case NoFit::AboveLevels:
-      return answers + " are as few as can be at the highest level still";
+      return answers + " are still at their minimum at the highest level";
   }
   return "";
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Thresholds of methods and of participants, from answers at several levels.
+/// Thresholds of methods and participants, from answers at several levels.
 
 #include <optional>
 #include <span>
@@ -14,25 +14,27 @@ namespace prostm {
 /// A psychometric function of one method in one scene.
 struct ThresholdResult {
   std::string method, scene;
-  std::string participant;         ///< empty: all of them together
-  std::vector<LevelScore> scores;  ///< by level, ascending; answers at the same level are pooled
+  std::string participant;         ///< empty: all participants together
+  std::vector<LevelScore> scores;  ///< ascending by level; answers at the same level are pooled
   std::optional<PsychometricFit> fit;
   NoFit no_fit = NoFit::TooFewLevels;     ///< where there is no fit
   std::optional<ThresholdBounds> bounds;  ///< where there is no fit, but bounds
 };
 
-/// Fits each method in each scene, all participants together first and then each, by name.
+/// Fits each method in each scene, first for all participants together, then for each participant
+/// by name.
 /// @pre each answer has a level; as fit_psychometric().
 std::vector<ThresholdResult> fit_thresholds(std::span<const Answer> answers,
                                             const PsychometricSettings& settings);
 
-/// Digits that tell levels apart by a thousandth of their range, or nearly. @pre levels ascend.
+/// Significant digits that resolve about a thousandth of the range of levels. @pre levels ascend.
 int level_digits(std::span<const LevelScore> scores);
 
-/// The reason why there is no fit, without a full stop. @param kind of the answers.
+/// Describes why there is no fit, without a full stop. @param kind the kind of the answers.
 std::string in_words(NoFit reason, AnswerKind kind);
 
-/// Where a threshold lies: "1.2 to 1.4", "below 1.2", "above 1.4". @pre an end is finite.
+/// Describes the bounds of a threshold: "1.2 to 1.4", "below 1.2", "above 1.4". @pre an end is
+/// finite.
 std::string bounds_text(const Interval& of, int digits);
 
 }  // namespace prostm

@@ -24,13 +24,12 @@ class Words {
     const SceneResult& all = analysis_.scenes.front();
     say_missing();
     if (is_one_person()) {
-      say("All answers are of one participant: they tell about this person alone, so what is about "
-          "people in general is left out (tests over participants, dispersion, participants "
-          "needed)");
+      say("All answers are of one participant, so results about people in general are left out "
+          "(tests over participants, dispersion, participants needed)");
     }
     if (analysis_.kind == AnswerKind::Felt) {
-      say("Answers are for the level or not, and neither is wrong: yes, or the level's interval of "
-          "two");
+      say("Answers are for the level (yes, or its interval of the two) or against it; neither is "
+          "wrong");
       say_thresholds();
       return text_;
     }
@@ -39,7 +38,8 @@ class Words {
     for (std::size_t i = 1; i < analysis_.scenes.size(); ++i) say_scene(analysis_.scenes[i]);
     const std::size_t looks = analysis_.scenes.size() * all.comparisons.size();
     if (looks > 1)
-      say(fmt::format("These are {} comparisons, and no p is corrected for their number", looks));
+      say(fmt::format("These are {} comparisons; p values are not corrected for their number",
+                      looks));
     for (const Comparison& of : all.comparisons) say_needed(of);
     if (!analysis_.thresholds.empty()) say_thresholds();
     return text_;
@@ -57,7 +57,7 @@ class Words {
     const std::string missing = in_words(analysis_.missing, analysis_.kind);
     text_ += missing;
     if (analysis_.left_out.empty()) return;
-    say(fmt::format("Left out, since some scene has no answer of theirs: {}",
+    say(fmt::format("Participants left out because they answered no trial of some scene: {}",
                     fmt::join(analysis_.left_out, ", ")));
   }
 
@@ -74,7 +74,7 @@ class Words {
       sentence += fmt::format(", which is {} the {:g} % of guessing ({})",
                               above ? "above" : "below", chance, p_in_words(method.p_chance));
     } else {
-      sentence += fmt::format(", which guessing would do too ({:g} %, {})", chance,
+      sentence += fmt::format(", which is compatible with guessing ({:g} %, {})", chance,
                               p_in_words(method.p_chance));
     }
     say(sentence);
@@ -90,22 +90,22 @@ class Words {
     say_dispersion();
     if (!of.permutation) {
       say(fmt::format(
-          "A test over participants needs two with each method, and {} or {} has one, so "
-          "that these answers cannot tell methods from people",
+          "A test over participants needs two with each method, but {} or {} has only one, so "
+          "differences between methods and between people cannot be separated",
           of.first, of.second));
       return;
     }
     const bool within = analysis_.groups == Groups::Within;
     std::string sentence = fmt::format(
-        "Over participants, the test that holds for other people, it is {} (permutation {}",
+        "Over participants, the test that generalises to other people, it is {} (permutation {}",
         verdict(of.permutation->p), p_in_words(of.permutation->p));
     if (of.t)
       sentence += fmt::format("; {} {}", within ? "paired t" : "Welch's t", p_in_words(of.t->p));
     say(sentence + ")");
     if (!is_significant(of.permutation->p)) {
       say(fmt::format(
-          "So these data do not show that {} and {} differ for people in general; nor do "
-          "they show that they do not",
+          "So these data show neither that {} and {} differ for people in general, nor that they "
+          "are equal",
           of.first, of.second));
     }
   }
@@ -115,15 +115,16 @@ class Words {
     for (const MethodResult& method : analysis_.scenes.front().methods) {
       if (!method.dispersion || !is_significant(method.dispersion->p)) continue;
       const double ratio = method.dispersion->statistic / method.dispersion->df;
-      sentence += sentence.empty()
-                      ? fmt::format(
-                            "They are not: participants differ {:.1f} times as much with {} "
-                            "as independent answers would make them ({})",
-                            ratio, method.method, p_in_words(method.dispersion->p))
-                      : fmt::format(", and {:.1f} times as much with {} ({})", ratio, method.method,
-                                    p_in_words(method.dispersion->p));
+      sentence +=
+          sentence.empty()
+              ? fmt::format(
+                    "They are not independent: participants differ {:.1f} times as much with {} "
+                    "as they would with independent answers ({})",
+                    ratio, method.method, p_in_words(method.dispersion->p))
+              : fmt::format(", and {:.1f} times as much with {} ({})", ratio, method.method,
+                            p_in_words(method.dispersion->p));
     }
-    say(sentence.empty() ? "Trials of one participant are never quite independent" : sentence);
+    say(sentence.empty() ? "Answers of one participant are never entirely independent" : sentence);
   }
 
   void say_scene(const SceneResult& scene) {
@@ -152,8 +153,8 @@ class Words {
     const bool within = analysis_.groups == Groups::Within;
     if (!of.needed) {
       say(
-          fmt::format("No number of participants below 10 000 would show a difference as small as "
-                      "the one between {} and {} (d = {:.2f})",
+          fmt::format("The difference between {} and {} (d = {:.2f}) is too small to be shown with "
+                      "fewer than 10 000 participants",
                       of.first, of.second, *of.d));
       return;
     }
@@ -166,12 +167,12 @@ class Words {
 
   void say_thresholds() {
     if (analysis_.kind == AnswerKind::Right) {
-      say("All of this is about shares of right answers, which compare methods only where all were "
-          "asked at the same levels; thresholds hold for other levels too");
+      say("Shares of right answers compare methods only if all were presented at the same levels; "
+          "thresholds do not depend on the levels");
     }
     const std::vector<ThresholdResult>& all = analysis_.thresholds;
     for (std::size_t i = 0; i < all.size();) {
-      std::size_t end = i + 1;  // of its participants
+      std::size_t end = i + 1;  // end of its participants
       while (end < all.size() && !all[end].participant.empty()) ++end;
       say_threshold(all[i], std::span(all).subspan(i + 1, end - i - 1));
       i = end;
@@ -182,16 +183,16 @@ class Words {
             : fmt::format("1 minus the lapse rate, which is fitted from 0 to {:g} %",
                           100.0 * kMostLapse);
     say(
-        fmt::format("A threshold is the level half-way between {} ({:g} %) and the most ({}); "
-                    "intervals are as if answers were independent{}",
-                    analysis_.kind == AnswerKind::Right ? "guessing" : "the least",
+        fmt::format("A threshold is the level half-way between {} ({:g} %) and the maximum ({}); "
+                    "intervals assume independent answers{}",
+                    analysis_.kind == AnswerKind::Right ? "guessing" : "the minimum",
                     100.0 * *analysis_.settings.guess, lapse,
                     is_one_person() ? ""
-                                    : ", and too narrow for people in general where participants "
+                                    : ", and are too narrow for people in general if participants "
                                       "differ"));
   }
 
-  /// A threshold that is fitted, or the bounds of one.
+  /// Describes a fitted threshold, or its bounds.
   std::string threshold_text(const ThresholdResult& of) const {
     const int digits = level_digits(of.scores);
     const double percent = 100.0 * analysis_.settings.level;
@@ -200,18 +201,18 @@ class Words {
     if (of.fit) {
       const std::string found =
           fmt::format("the threshold is {:.{}g}", of.fit->function.threshold, digits);
-      if (!of.fit->threshold) return found + ", and the answers leave its interval open";
+      if (!of.fit->threshold) return found + ", and its interval is unbounded";
       return fmt::format("{} ({:g} % interval {})", found, percent,
                          bounds_text(*of.fit->threshold, digits));
     }
     if (!of.bounds) return "no threshold can be fitted: " + why;
     const std::string best = bounds_text(of.bounds->best, digits);
     if (is_open(of.bounds->interval)) {
-      return fmt::format("{}; the threshold is best {}, and its interval is open", why, best);
+      return fmt::format("{}; the best threshold is {}, and its interval is unbounded", why, best);
     }
     const bool between = of.no_fit == NoFit::Step;
     return fmt::format(
-        "{}, so that the answers bound the threshold and no slope: it is {}{} ({:g} % interval of "
+        "{}, so the answers bound the threshold but not the slope: it is {}{} ({:g} % interval of "
         "the likelihood over all slopes: {})",
         why, between ? "best from " : "", best, percent, bounds_text(of.bounds->interval, digits));
   }
@@ -224,16 +225,16 @@ class Words {
                                         [](const ThresholdResult& x) { return !!x.fit; });
       const auto bounded = std::count_if(participants.begin(), participants.end(),
                                          [](const ThresholdResult& x) { return !!x.bounds; });
-      sentence += fmt::format("; {} of {} single participants' answers have a fit", fitted,
+      sentence += fmt::format("; {} of {} participants have a fit of their own", fitted,
                               participants.size());
-      if (bounded > 0) sentence += fmt::format(", {} bounds alone", bounded);
+      if (bounded > 0) sentence += fmt::format(", {} only bounds", bounded);
       sentence += thresholds_text(of, participants);
     }
     say(sentence);
     if (of.fit && of.fit->misfit && is_significant(of.fit->misfit->p)) say_misfit(of);
   }
 
-  /// The range of the thresholds that single participants have.
+  /// Describes the range of the participants' own thresholds.
   static std::string thresholds_text(const ThresholdResult& all,
                                      std::span<const ThresholdResult> participants) {
     std::vector<double> own;
@@ -249,8 +250,8 @@ class Words {
   void say_misfit(const ThresholdResult& of) {
     const Misfit& misfit = *of.fit->misfit;
     std::string why = is_one_person()
-                          ? "this person lapses more often than that or changes with time"
-                          : "participants differ, or lapse more often than that";
+                          ? "this person lapses more often than assumed, or changes with time"
+                          : "participants differ, or lapse more often than assumed";
     say(
         fmt::format("This function does not fit the answers (deviance {:.1f} with {} degrees of "
                     "freedom, {}), so its threshold and interval may be wrong; perhaps {}{}",
@@ -289,13 +290,13 @@ std::string in_words(std::span<const MissingAnswers> missing, AnswerKind kind) {
                        100.0 * of.missing / of.trials, of.participants,
                        of.participants == 1 ? "" : "s");
     if (kind == AnswerKind::Right) {
-      out += fmt::format("; if all were wrong or all right, {:.1f} or {:.1f} % would be right",
+      out += fmt::format("; {:.1f} % right if all of them were wrong, {:.1f} % if all were right",
                          100.0 * of.if_answered.low, 100.0 * of.if_answered.high);
     }
     out += ')';
   }
   return "Trials without an answer are left out: " + out +
-         ". Shares are biased if answers are missing more often where they would be wrong.";
+         ". Shares are biased if wrong answers are missing more often than right ones.";
 }
 
 std::string in_words(const Analysis& analysis) {

@@ -11,8 +11,8 @@
 namespace prostm {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{1};  // less than the shortest queue of a device
-constexpr int kDelays = 10;                    // of a sample, while it is waited for
+constexpr std::chrono::milliseconds kLook{1};  // polling interval, shorter than any device's queue
+constexpr int kDelays = 10;  // largest number of times that a sample is delayed while waiting
 
 double utc_now() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -54,7 +54,7 @@ void MarkerSender::tell(const StudyPlayed& played) {
   emission_.played = played;
 }
 
-/// Only where the condition is told, which it would tell.
+/// Emission of a presentation; none unless the condition is disclosed, which it would reveal.
 std::optional<StudyPlayed> MarkerSender::emission_of(const Presentation& presentation) {
   if (presentation.condition == 0) return {};
   const std::lock_guard hold(lock_);
@@ -67,11 +67,12 @@ void MarkerSender::work(const std::stop_token& stop) {
     while (const SoundChange* found = sound_.front()) {
       const SoundChange change = *found;
       Marker marker = marker_of(change);
-      sound_.pop();  // the device may stop from here on
+      sound_.pop();  // from here on the device may stop
       wait(change, marker);
       send(marker);
       if (!markers_.push(marker))
-        news_.push("A marker was sent that the participant's file lacks: the study stands still.");
+        news_.push(
+            "A marker was sent but not recorded in the participant's file: the study has stalled.");
     }
     if (last) return;
     std::this_thread::sleep_for(kLook);
@@ -95,7 +96,7 @@ Marker MarkerSender::marker_of(const SoundChange& change) {
   return marker;
 }
 
-/// Nothing if the device has stopped since, or started anew.
+/// Play time of the sample; nothing if the device has stopped or restarted since.
 std::optional<double> MarkerSender::play_time(const SoundChange& change) const {
   if (device_.status() != DeviceStatus::Running) return {};
   const double time = device_.play_time(change.sample);
@@ -103,7 +104,7 @@ std::optional<double> MarkerSender::play_time(const SoundChange& change) const {
   return time;
 }
 
-/// Until the sample leaves the array, which may come to be later than the device had said.
+/// Waits until the sample leaves the array, which may be later than first predicted.
 void MarkerSender::wait(const SoundChange& change, Marker& marker) const {
   for (int i = 0; i < kDelays && marker.played && *marker.played > steady_now(); ++i) {
     sleep_until(*marker.played);
@@ -125,11 +126,12 @@ void MarkerSender::send(Marker& marker) {
     if (!problem.empty()) marker.failed |= 1U << i;
     if (problem.empty() == !target.failed) continue;
     target.failed = !problem.empty();
-    news_.push(target.failed
-                   ? fmt::format("Markers do not reach {}: {}. The study goes on; all markers are "
-                                 "in the participant's file.",
-                                 target.to.address, problem)
-                   : fmt::format("Markers reach {} again.", target.to.address));
+    news_.push(
+        target.failed
+            ? fmt::format("Markers do not reach {}: {}. The study continues; all markers are "
+                          "in the participant's file.",
+                          target.to.address, problem)
+            : fmt::format("Markers reach {} again.", target.to.address));
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Sends markers at the moments that they tell of.
+/// Sends markers at the time of the events that they mark.
 
 #include <atomic>
 #include <memory>
@@ -17,48 +17,49 @@
 
 namespace prostm {
 
-/// The part that is the same in all markers of a run.
+/// The part common to all markers of a run.
 struct MarkerRun {
   int participant = 0;
-  int run = 1;  ///< with this participant, from 1
+  int run = 1;  ///< number of this participant's run, from 1
 };
 
-/// On a thread of its own it takes the changes of the output, asks the device when their samples
-/// leave the array, waits until then, and sends. What cannot be sent is said once, and goes on: all
-/// markers are handed to the study, which writes them down.
+/// A thread takes each change of the output, asks the device when its sample leaves the array,
+/// waits until then, and sends the marker. A failed send is reported once; sending continues. All
+/// markers are also passed to the study, which records them.
 class MarkerSender {
  public:
-  /// Starts the thread. All but `run` must outlive stop().
+  /// Starts the thread. All arguments but `run` must remain valid until stop().
   MarkerSender(std::vector<OpenTarget> targets, const Protocol& protocol, const MarkerRun& run,
                const Device& device, SoundWatch& sound);
   ~MarkerSender() { stop(); }
   MarkerSender(const MarkerSender&) = delete;
   MarkerSender& operator=(const MarkerSender&) = delete;
 
-  /// Sends what the device has played, and ends the thread.
+  /// Sends the remaining markers, and ends the thread.
   void stop();
 
   // ---- the study's thread ----
-  /// Names what sounds next, and how its newest plan is played. Call it before the mute is lifted.
+  /// Sets the next presentation and the emission of its newest plan. Call it before unmuting.
   void present(const Presentation& now, const std::optional<StudyPlayed>& played);
-  /// How the newest plan of what sounds is played. It stays so where no plan follows.
+  /// Sets the emission of the newest plan of the current presentation; it holds until the next
+  /// plan.
   void tell(const StudyPlayed& played);
-  /// The oldest marker that was not handed over yet; false without one.
+  /// Takes the oldest marker not yet passed to the study; false if all were.
   bool next(Marker& out) { return markers_.pop(out); }
-  /// Returns the line that the response file gets.
+  /// Returns the marker's line for the response file.
   ResponseLine line(const Marker& marker) const;
 
   // ---- the program's thread ----
-  /// The oldest sentence about a target that was not told yet; false without one.
+  /// Takes the oldest pending message about a target; false if no message is pending.
   bool next_news(std::string& sentence) { return news_.pop(sentence); }
 
  private:
   struct Target {
     OpenTarget to;
-    bool failed = false;  // the thread's
+    bool failed = false;  // used by the thread only
   };
 
-  /// How a presentation is played, by its number.
+  /// The emission of a presentation, by its number.
   struct Emission {
     std::uint32_t presentation = 0;
     std::optional<StudyPlayed> played;
@@ -78,12 +79,12 @@ class MarkerSender {
 
   // the thread's
   std::vector<Target> targets_;
-  std::int64_t sent_ = 0;  // markers
+  std::int64_t sent_ = 0;  // number of markers
   Presentation last_;
   int part_ = 0;
 
   std::mutex lock_;
-  Emission emission_;  // of the newest presentation, under the lock
+  Emission emission_;  // of the newest presentation; guarded by lock_
 
   SpscRing<Marker> markers_{1024};
   SpscRing<std::string> news_{64};

@@ -37,7 +37,7 @@ class UdpTarget final : public MarkerTarget {
     const auto found = Udp::resolver(context_).resolve(to.host, std::to_string(to.port),
                                                        Udp::resolver::numeric_service, wrong);
     if (wrong) cannot_open(address, wrong.message());
-    // so that the system tells when nobody receives there
+    // connected, so that the system reports when nothing is listening
     const Udp::endpoint end = found.begin()->endpoint();
     if (!socket_.open(end.protocol(), wrong) && !socket_.connect(end, wrong))
       socket_.non_blocking(true, wrong);
@@ -45,11 +45,11 @@ class UdpTarget final : public MarkerTarget {
   }
 
   std::string send(std::string_view line, std::uint8_t) override {
-    std::string problem = refusal();  // of an earlier datagram; it would keep this one back
+    std::string problem = refusal();  // a pending error of an earlier datagram would block this one
     boost::system::error_code wrong;
     socket_.send(asio::buffer(line.data(), line.size()), 0, wrong);
     if (wrong) return wrong.message();
-    const std::string own = refusal();  // comes at once from this machine
+    const std::string own = refusal();  // reported at once on this machine
     return own.empty() ? problem : own;
   }
 
@@ -60,7 +60,7 @@ class UdpTarget final : public MarkerTarget {
     if (::getsockopt(socket_.native_handle(), SOL_SOCKET, SO_ERROR, &error, &size) != 0)
       return std::strerror(errno);
     if (error == 0) return {};
-    return error == ECONNREFUSED ? "nobody receives there" : std::strerror(error);
+    return error == ECONNREFUSED ? "nothing is listening there" : std::strerror(error);
   }
 
   asio::io_context context_;
@@ -68,8 +68,8 @@ class UdpTarget final : public MarkerTarget {
 };
 
 std::string problem_of(const boost::system::error_code& wrong) {
-  if (wrong.value() == EACCES) return "you may not; in Debian, join the group dialout";
-  return wrong.value() == ENOTTY ? "it is no serial port" : wrong.message();
+  if (wrong.value() == EACCES) return "permission denied; in Debian, join the group dialout";
+  return wrong.value() == ENOTTY ? "it is not a serial port" : wrong.message();
 }
 
 class SerialTarget final : public MarkerTarget {
@@ -83,7 +83,7 @@ class SerialTarget final : public MarkerTarget {
       const auto [stopped, error] = std::from_chars(first, last, baud);
       if (error != std::errc() || stopped != last) {
         throw InputError(fmt::format(
-            "--markers {} has a rate that is no number; it must be serial://PATH:BAUD, for "
+            "--markers {} has a rate that is not a number; it must be serial://PATH:BAUD, for "
             "example serial:///dev/ttyUSB0:{}",
             address, kUsualBaud));
       }
@@ -102,9 +102,9 @@ class SerialTarget final : public MarkerTarget {
   }
 
   std::string send(std::string_view, std::uint8_t code) override {
-    // it was opened so that this does not wait
+    // opened in non-blocking mode
     if (::write(port_.native_handle(), &code, 1) == 1) return {};
-    return errno == EAGAIN ? "it takes no more" : std::strerror(errno);
+    return errno == EAGAIN ? "its buffer is full" : std::strerror(errno);
   }
 
  private:
@@ -125,7 +125,7 @@ std::unique_ptr<MarkerTarget> open_marker_target(const std::string& address) {
 
 std::vector<OpenTarget> open_marker_targets(const std::vector<std::string>& addresses) {
   if (addresses.size() > kMostTargets) {
-    throw InputError(fmt::format("--markers is given {} times; it may be given {} times",
+    throw InputError(fmt::format("--markers is given {} times; at most {} are allowed",
                                  addresses.size(), kMostTargets));
   }
   std::vector<OpenTarget> targets;

@@ -9,54 +9,62 @@
 namespace prostm {
 namespace {
 
-constexpr double kMost = 1e6;  // of levels, in any unit
+constexpr double kMost = 1e6;  // largest size of a level, in any unit
 
 template <class Settings, class V>
 void list_levels(Settings& s, V& v) {
-  v.field({.name = "setting", .help = "that is varied, e.g. \"plan.gain\""}, s.setting);
+  v.field({.name = "setting", .help = "name of the setting to vary, e.g. \"plan.gain\""},
+          s.setting);
   v.field({.name = "low", .least = -kMost, .most = kMost, .help = "lowest level"}, s.low);
   v.field({.name = "high", .least = -kMost, .most = kMost, .help = "highest level"}, s.high);
-  v.field({.name = "scale", .help = "whether steps are of one size, or shares of the level"},
+  v.field({.name = "scale", .help = "steps of a fixed size, or proportional to the level"},
           s.scale);
   v.field({.name = "start", .least = -kMost, .most = kMost, .help = "first level of a staircase"},
           s.start);
   v.field({.name = "step",
            .least = 0,
            .most = kMost,
-           .help = "of up-down and adjustment: a level, or a share of it where scale is log"},
+           .help = "step of up-down and adjustment; a share of the level if scale is log"},
           s.step);
   v.field({.name = "reference", .least = -kMost, .most = kMost, .help = "level of the standard"},
           s.reference);
-  v.field({.name = "against", .help = "the method that is the standard"}, s.against);
-  v.field({.name = "procedure", .help = "of a staircase"}, s.procedure);
+  v.field({.name = "against", .help = "the method used as standard"}, s.against);
+  v.field({.name = "procedure", .help = "kind of staircase"}, s.procedure);
   v.field({.name = "share",
            .least = 0.05,
            .most = 0.95,
-           .help = "of answers for the level, to which up-down converges"},
+           .help = "share of answers for the level that up-down converges to"},
           s.share);
-  v.field({.name = "coarse", .least = 0, .most = 100, .help = "reversals with the double step"},
-          s.coarse);
-  v.field({.name = "reversals", .least = 2, .most = 1000, .help = "after which up-down ends"},
+  v.field(
+      {.name = "coarse", .least = 0, .most = 100, .help = "first reversals, with the double step"},
+      s.coarse);
+  v.field({.name = "reversals",
+           .least = 2,
+           .most = 1000,
+           .help = "total reversals, after which up-down ends"},
           s.reversals);
   v.field({.name = "trials",
            .least = 1,
            .most = 1000,
-           .help = "of a staircase of bayes; at most, of up-down"},
+           .help = "length of a bayes staircase; upper limit for up-down"},
           s.trials);
-  v.field({.name = "slope", .least = 0, .most = 1e9, .help = "of bayes; 0: 20 over the range"},
-          s.slope);
+  v.field(
+      {.name = "slope", .least = 0, .most = 1e9, .help = "of bayes; 0: 20 divided by the range"},
+      s.slope);
   v.field({.name = "tracks",
            .least = 1,
            .most = 20,
-           .help = "staircases of each scene with each method"},
+           .help = "staircases for each scene with each method"},
           s.tracks);
-  v.field({.name = "interval", .unit = "s", .least = 0.2, .most = 60, .help = "of a stimulus"},
-          s.interval);
-  v.field({.name = "gap", .unit = "s", .least = 0.1, .most = 60, .help = "between intervals"},
-          s.gap);
+  v.field(
+      {.name = "interval", .unit = "s", .least = 0.2, .most = 60, .help = "length of a stimulus"},
+      s.interval);
+  v.field(
+      {.name = "gap", .unit = "s", .least = 0.1, .most = 60, .help = "silence between intervals"},
+      s.gap);
 }
 
-/// Sets the number of one name.
+/// Sets the number with a given name.
 class LevelWriter final : public SettingsWriter {
  public:
   LevelWriter(std::string_view name, double level) : name_(name), level_(level) {}
@@ -110,7 +118,7 @@ double LevelSettings::step_on_scale() const {
 double set_level(PipelineSettings& settings, const std::string& setting, double level) {
   const std::size_t dot = setting.find('.');
   const std::string group = setting.substr(0, dot);
-  // emit.foci is fixed: the array is made for so many
+  // emit.foci is fixed: the array is set up for that number
   const bool changes = (group == "plan" || group == "am" || group == "emit") &&
                        dot != std::string::npos && setting != "emit.foci";
   if (changes) {
@@ -120,7 +128,7 @@ double set_level(PipelineSettings& settings, const std::string& setting, double 
     if (writer.found()) return writer.set();
   }
   throw std::invalid_argument(
-      fmt::format("setting = \"{:.60}\" is no number of [plan], [am] or [emit] that can change "
+      fmt::format("setting = \"{:.60}\" is not a number of [plan], [am] or [emit] that can change "
                   "during a trial, such as \"plan.gain\"",
                   setting));
 }

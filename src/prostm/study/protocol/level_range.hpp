@@ -3,7 +3,7 @@
 
 namespace prostm {
 
-/// Bounds of levels that a procedure may ask for, on its scale.
+/// Bounds of the levels that a procedure may choose, on its scale.
 struct LevelRange {
   double low = 0.0, high = 1.0;
 };

@@ -14,7 +14,7 @@ Random random_for(const Protocol& protocol, Purpose purpose, std::uint32_t numbe
 
 namespace {
 
-/// The place of this participant among the rows of their block, drawn at random.
+/// The row of this participant within their block, drawn at random.
 std::size_t row_of(const Protocol& protocol, int participant, std::size_t rows) {
   const auto n = static_cast<std::size_t>(participant - 1);
   std::vector<std::size_t> order(rows);
@@ -32,7 +32,7 @@ std::vector<int> draw_questions(const Protocol& protocol, Random& random) {
     for (int& q : questions) q = random.below(scenes);
     return questions;
   }
-  // where scenes do not divide them, those that have one more are drawn too
+  // if the scenes do not divide the number evenly, those with one more are drawn, too
   std::vector<int> all(static_cast<std::size_t>(scenes));
   std::iota(all.begin(), all.end(), 0);
   random.shuffle(all);

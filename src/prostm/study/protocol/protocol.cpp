@@ -5,18 +5,19 @@ namespace {
 
 template <class Settings, class V>
 void list_study(Settings& s, V& v) {
-  v.field({.name = "title", .help = "of the study, for its files and its pages"}, s.title);
+  v.field({.name = "title", .help = "title of the study, for its files and pages"}, s.title);
   v.field({.name = "participants",
            .least = 1,
            .most = 10000,
-           .help = "that are planned; the order is balanced over them"},
+           .help = "planned participants; the order is balanced over them"},
           s.participants);
-  v.field({.name = "methods", .help = "each participant has one method, or all"}, s.methods);
-  v.field({.name = "seed", .least = 0, .help = "of the order of methods and trials"}, s.seed);
-  v.field({.name = "blind", .help = "hides from the experimenter what is presented"}, s.blind);
-  v.field({.name = "demographics", .help = "asks for an age range, the hand and experience"},
+  v.field({.name = "methods", .help = "each participant gets one method, or all"}, s.methods);
+  v.field({.name = "seed", .least = 0, .help = "random seed of the order of methods and trials"},
+          s.seed);
+  v.field({.name = "blind", .help = "hides the stimuli from the experimenter"}, s.blind);
+  v.field({.name = "demographics", .help = "asks for age range, writing hand and experience"},
           s.demographics);
-  v.field({.name = "consent", .help = "the text to agree to; empty where that is done on paper"},
+  v.field({.name = "consent", .help = "text of the consent form; empty: consent is given on paper"},
           s.consent);
 }
 
@@ -26,9 +27,10 @@ void list_training(Settings& s, V& v) {
            .unit = "s",
            .least = 0,
            .most = 3600,
-           .help = "before the trials of each method"},
+           .help = "training before the trials of each method"},
           s.seconds);
-  v.field({.name = "picture", .help = "the participant sees the simulation meanwhile"}, s.picture);
+  v.field({.name = "picture", .help = "the participant sees the simulation during training"},
+          s.picture);
 }
 
 template <class Settings, class V>
@@ -36,13 +38,14 @@ void list_trials(Settings& s, V& v) {
   v.field({.name = "repeats",
            .least = 1,
            .most = 1000,
-           .help = "trials of each scene with each method; staircases end by themselves"},
+           .help = "trials of each scene with each method; staircases end by their own rule"},
           s.repeats);
   v.field({.name = "questions", .help = "drawn for each trial, or balanced over a scene's trials"},
           s.questions);
   v.field({.name = "answers", .help = "who enters them"}, s.answers);
-  v.field({.name = "noise", .help = "the participant's page plays noise over the array's sound"},
-          s.noise);
+  v.field(
+      {.name = "noise", .help = "the participant's page plays noise that masks the array's sound"},
+      s.noise);
   v.field({.name = "feedback", .help = "tells the participant whether an answer was right"},
           s.feedback);
   v.field({.name = "break_every", .least = 0, .most = 1000, .help = "trials; 0 for no breaks"},
@@ -57,25 +60,25 @@ void list_trials(Settings& s, V& v) {
            .unit = "s",
            .least = 0.5,
            .most = 60,
-           .help = "silence after it, in which the smoke develops"},
+           .help = "silence after rest, while the smoke develops"},
           s.settle);
   v.field({.name = "time_limit",
            .unit = "s",
            .least = 0,
            .most = 600,
-           .help = "after which a stimulus ends; 0 until the answer"},
+           .help = "longest stimulus; 0: until the answer"},
           s.time_limit);
   v.field({.name = "strength",
            .least = 0,
            .most = 10,
-           .help = "relative difference in strength of a method's scenes that is let pass"},
+           .help = "tolerated relative difference in strength between the scenes of a method"},
           s.strength);
   v.field({.name = "gate", .help = "whether a trial waits for the stimulus gate"}, s.gate);
 }
 
 template <class Settings, class V>
 void list_markers(Settings& s, V& v) {
-  v.field({.name = "conditions", .help = "markers tell what is presented, also in a blind study"},
+  v.field({.name = "conditions", .help = "markers include the stimulus, even in a blind study"},
           s.conditions);
 }
 
@@ -107,10 +110,10 @@ void MarkerSettings::visit(SettingsWriter& v) {
 }
 
 void StudyScene::visit(SettingsReader& v) const {
-  v.field({.name = "question", .help = "yes or no, as it is read and shown"}, question);
+  v.field({.name = "question", .help = "a yes/no question, as shown and read aloud"}, question);
 }
 void StudyScene::visit(SettingsWriter& v) {
-  v.field({.name = "question", .help = "yes or no, as it is read and shown"}, question);
+  v.field({.name = "question", .help = "a yes/no question, as shown and read aloud"}, question);
 }
 
 }  // namespace prostm

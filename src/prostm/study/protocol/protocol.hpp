@@ -1,5 +1,5 @@
 #pragma once
-/// The protocol of a study: what is presented, how often, in what order, and what is asked.
+/// The protocol of a study: stimuli, repetitions, order and questions.
 
 #include <array>
 #include <cstdint>
@@ -16,25 +16,25 @@ namespace prostm {
 
 class Task;
 
-/// Who gets which methods.
+/// Assignment of methods to participants.
 enum class MethodsOf : std::uint8_t {
-  Between,  ///< each participant has one
-  Within    ///< each participant has all, one after the other
+  Between,  ///< each participant gets one method
+  Within    ///< each participant gets all methods, one after the other
 };
 template <>
 inline constexpr std::array<std::string_view, 2> kNames<MethodsOf> = {"between", "within"};
 
-/// How the scenes that are asked for are drawn.
+/// How the scene in question is drawn.
 enum class Questions : std::uint8_t {
-  Random,   ///< for each trial anew, as in the paper
-  Balanced  ///< of each scene's trials the same number asks for each scene, up to one
+  Random,   ///< independently for each trial, as in the paper
+  Balanced  ///< among the trials of each scene, all scenes are asked for equally often, within one
 };
 template <>
 inline constexpr std::array<std::string_view, 2> kNames<Questions> = {"random", "balanced"};
 
 enum class GateUse : std::uint8_t {
-  Required,  ///< a trial waits until the gate passes, or the experimenter goes on without
-  Noted,     ///< its verdict is written down
+  Required,  ///< a trial waits until the gate passes or the experimenter overrides it
+  Noted,     ///< its verdict is recorded only
   Off
 };
 template <>
@@ -49,12 +49,12 @@ inline constexpr std::array<std::string_view, 2> kNames<AnswersFrom> = {"experim
 /// [study]
 struct StudySettings {
   std::string title;
-  int participants = 16;  ///< that are planned: over them the order is balanced
+  int participants = 16;  ///< planned participants; the order is balanced over them
   MethodsOf methods = MethodsOf::Between;
-  int seed = 1;               ///< of all orders
+  int seed = 1;               ///< seed of all orders
   bool blind = true;          ///< the experimenter does not see what is presented
-  bool demographics = false;  ///< asks for an age range, a hand and experience; never for a name
-  std::string consent;        ///< the text to agree to; empty: that is done on paper
+  bool demographics = false;  ///< asks for age range, writing hand and experience; never for a name
+  std::string consent;        ///< text of the consent form; empty: consent is given on paper
 
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
@@ -71,49 +71,49 @@ struct TrainingSettings {
 
 /// [trials]
 struct TrialSettings {
-  const Task* task = nullptr;  ///< of the participant; set by whoever reads the protocol
-  int repeats = 8;             ///< of each scene, with each method; staircases end by themselves
+  const Task* task = nullptr;  ///< the participant's task; set when the protocol is read
+  int repeats = 8;  ///< trials of each scene with each method; staircases end by their own rule
   Questions questions = Questions::Random;
   AnswersFrom answers = AnswersFrom::Experimenter;
-  bool noise = false;       ///< the participant's page plays noise, which masks the array's sound
+  bool noise = false;       ///< the participant's page plays noise that masks the array's sound
   bool feedback = false;    ///< tells the participant whether the answer was right
   int break_every = 0;      ///< trials; 0: no breaks
   double rest = 1.0;        ///< still air before each trial [s]
-  double settle = 2.0;      ///< silence after it, in which the smoke develops [s]
-  double time_limit = 0.0;  ///< of the stimulus, which then ends; 0: until the answer [s]
-  /// Difference in rendered force between the scenes of a method that is let pass: the Weber
-  /// fraction of touch (docs/design/study.md).
+  double settle = 2.0;      ///< silence after `rest`, while the smoke develops [s]
+  double time_limit = 0.0;  ///< longest stimulus [s]; 0: until the answer
+  /// Largest relative difference in rendered force between the scenes of a method that is
+  /// tolerated: the Weber fraction of touch (docs/design/study.md).
   double strength = 0.2;
   GateUse gate = GateUse::Required;
 
-  /// Visits all but the task, which protocol_file.hpp names.
+  /// Visits all settings except the task, which protocol_file.hpp reads.
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
 };
 
 /// [markers], docs/study/study-files.md
 struct MarkerSettings {
-  bool conditions = false;  ///< markers tell method and scene, also in a blind study
+  bool conditions = false;  ///< markers include method and scene, even in a blind study
 
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
 };
-/// Conditions that have codes of their own.
+/// Largest number of conditions with their own codes.
 inline constexpr std::size_t kMostMarkedConditions = 239;
 
-/// A stimulus that is presented, and asked for: a [scene.NAME] of the protocol.
+/// A stimulus and the question about it: a [scene.NAME] of the protocol.
 struct StudyScene {
-  std::string name;      ///< of the world's scenes
-  std::string question;  ///< in words, as it is read and shown
+  std::string name;      ///< name of one of the world's scenes
+  std::string question;  ///< the question, as shown and read aloud
 
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
 };
 
-/// How it is rendered: a [method.NAME] of the protocol, which holds groups of settings.
+/// A rendering method: a [method.NAME] of the protocol, which holds groups of settings.
 struct StudyMethod {
   std::string name;
-  PipelineSettings settings;  ///< of its trials, but for the scene
+  PipelineSettings settings;  ///< of its trials, except the scene
 };
 
 struct Protocol {
@@ -121,10 +121,10 @@ struct Protocol {
   TrainingSettings training;
   TrialSettings trials;
   MarkerSettings markers;
-  LevelSettings level;               ///< of tasks that have levels
-  std::vector<StudyMethod> methods;  ///< as they stand in the file, as do scenes; `standard` aside
+  LevelSettings level;               ///< for tasks with levels
+  std::vector<StudyMethod> methods;  ///< in the order of the file, like scenes; without `standard`
   std::vector<StudyScene> scenes;
-  std::optional<StudyMethod> standard;  ///< that a level is compared with, where level.against is
+  std::optional<StudyMethod> standard;  ///< the method in level.against, if set
 };
 
 }  // namespace prostm

@@ -7,7 +7,7 @@ namespace prostm {
 namespace {
 
 constexpr double kStays =
-    1.0;  // a change that is written down; noise takes a part of it to rise [s]
+    1.0;  // a recorded change has lasted this long, e.g. past the noise's fade-in [s]
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The duties of the participant's page in a study, and its reports.
+/// The requirements on the participant's page in a study, and the page's reports.
 
 #include <array>
 #include <bitset>
@@ -13,51 +13,50 @@
 
 namespace prostm {
 
-/// The masking noise of a page.
+/// State of the masking noise of a page.
 enum class PageNoise : std::uint8_t {
-  Off,     ///< the browser does not let the page play: its button was not pressed since it loaded
-  Silent,  ///< it may play, and no noise is measured in its output
-  Playing  ///< it is measured
+  Off,     ///< the browser blocks audio: the button was not pressed since the page loaded
+  Silent,  ///< audio is allowed, but no noise is measured in the output
+  Playing  ///< noise is measured in the output
 };
 template <>
 inline constexpr std::array<std::string_view, 3> kNames<PageNoise> = {"off", "silent", "playing"};
 
 /// A report of a page about itself (docs/reference/wire.md).
 struct PageReport {
-  bool visible = false;  ///< its tab is in front, its window not minimised
+  bool visible = false;  ///< the tab is in front and its window is not minimised
   PageNoise noise = PageNoise::Off;
   bool picture = false;  ///< the simulation is being drawn
 };
 
-/// The participant's page now.
+/// Current state of the participant's page.
 struct ParticipantPage {
   bool open = false;  ///< connected
-  /// The newest report. None before the first, and none of a page that has stopped reporting.
+  /// The newest report; none before the first, or if the page has stopped reporting.
   std::optional<PageReport> report;
 };
 
-/// Needs of a trial, or of training, that the page must meet.
+/// Requirements of a trial, or of training, on the page.
 enum class PageNeed : std::uint8_t { Open, Report, Visible, Noise, Picture };
 template <>
 inline constexpr std::array<std::string_view, 5> kNames<PageNeed> = {"open", "report", "visible",
                                                                      "noise", "picture"};
-using PageNeeds = std::bitset<kNames<PageNeed>.size()>;  ///< by the place of each
+using PageNeeds = std::bitset<kNames<PageNeed>.size()>;  ///< indexed by PageNeed
 
-/// Demands on the page now.
+/// Current requirements on the page.
 struct PageTask {
-  bool open = false;                 ///< it must be there; otherwise only what is open counts
-  PageNoise noise = PageNoise::Off;  ///< at least
-  bool picture = false;              ///< the simulation is shown
+  bool open = false;  ///< a page must be open; otherwise requirements apply to open pages only
+  PageNoise noise = PageNoise::Off;  ///< minimum state
+  bool picture = false;              ///< the simulation must be shown
 };
 
-/// Returns the needs that are not met. A page that is open must report and be visible, whatever
-/// else is asked of it.
+/// Returns the unmet needs. An open page must always report and be visible.
 PageNeeds missing(const PageTask& task, const ParticipantPage& page);
 
 /// The names of the needs in a set.
 std::vector<std::string_view> names_of(const PageNeeds& needs);
 
-/// The first need that is missing and the remedy, for the experimenter; empty where nothing is.
+/// The first missing need and its remedy, for the experimenter; empty if none is missing.
 std::string sentence(const PageNeeds& missing);
 
 }  // namespace prostm

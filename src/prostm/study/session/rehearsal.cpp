@@ -5,8 +5,8 @@
 namespace prostm {
 namespace {
 
-constexpr double kFeels = 0.5;     // before it goes on, and before it answers [s]
-constexpr double kPatience = 5.0;  // with a gate that does not pass [s]
+constexpr double kFeels = 0.5;     // delay before it continues, and before it answers [s]
+constexpr double kPatience = 5.0;  // time it waits for a gate that does not pass [s]
 
 }  // namespace
 

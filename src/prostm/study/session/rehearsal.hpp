@@ -1,5 +1,5 @@
 #pragma once
-/// A session without people: whether everything works, before the first participant comes.
+/// A session without people, to test the setup before the first participant.
 
 #include <cstdint>
 #include <optional>
@@ -10,13 +10,13 @@
 
 namespace prostm {
 
-/// A simulated person at levels, who answers as the task has a model observer answer.
+/// A simulated participant for tasks with levels, who answers by Task::respond().
 class SimulatedPerson {
  public:
-  /// @pre the protocol outlives this, and its task has levels. @param threshold the level half-way
-  /// between guessing and the most, in the setting's unit.
+  /// @pre the protocol outlives this, and its task has levels. @param threshold level half-way
+  /// between the guess rate and the upper asymptote, in the setting's unit.
   SimulatedPerson(const Protocol& protocol, double threshold, std::uint64_t seed);
-  /// The act that answers a trial, or tunes it.
+  /// The act that answers or tunes a trial.
   StudyAct act(const Trial& trial);
 
  private:
@@ -24,11 +24,11 @@ class SimulatedPerson {
   Perception perception_;
 };
 
-/// Goes on by itself, and answers: a task without levels at random, others as a simulated person
-/// does whose threshold is drawn from the middle third of the levels.
+/// Runs a session automatically. It answers tasks without levels at random, and others as a
+/// simulated person with a threshold drawn from the middle third of the levels.
 class Rehearsal {
  public:
-  /// @param trials to answer; 0: all.
+  /// @param trials number of trials to answer; 0: all.
   Rehearsal(std::size_t trials, std::uint64_t seed) : trials_(trials), random_(seed) {}
 
   /// The act that is due now, if any.
@@ -39,10 +39,11 @@ class Rehearsal {
  private:
   std::size_t trials_;
   Random random_;
-  std::optional<SimulatedPerson> person_;  // of tasks with levels, once a session is seen
-  std::optional<StudyPhase> phase_;        // that was seen last
-  std::size_t first_ = 0;                  // answers that there were before
-  double since_ = 0.0;                     // when the phase began [s]
+  std::optional<SimulatedPerson>
+      person_;                       // for tasks with levels, created when a session is first seen
+  std::optional<StudyPhase> phase_;  // phase at the last call
+  std::size_t first_ = 0;            // answers given before the rehearsal
+  double since_ = 0.0;               // start of the phase [s]
   bool done_ = false;
 };
 

@@ -23,8 +23,8 @@ void add(boost::crc_32_type& sum, std::string_view text) {
   sum.process_bytes(text.data(), text.size());
 }
 
-/// The check of a line that follows what `before` has seen. @param body of the line, without its
-/// closing brace.
+/// The check of a line that follows the text in `before`. @param body the line without its closing
+/// brace.
 std::string check_of(boost::crc_32_type before, std::string_view body) {
   add(before, body);
   return fmt::format("{:08x}", before.checksum());
@@ -34,7 +34,7 @@ ResponseLine parse_line(std::string_view line, const boost::crc_32_type& before,
                         const std::string& where) {
   const auto fail = [&](const char* problem) { throw InputError(where + problem); };
   ResponseLine json = ResponseLine::parse(line, nullptr, false);
-  if (!json.is_object()) fail(" is no JSON object; the file was edited or damaged");
+  if (!json.is_object()) fail(" is not a JSON object; the file was edited or damaged");
   if (line.size() <= kTail || line.substr(line.size() - kTail, kCheck.size()) != kCheck)
     fail(" does not end with its check; the file was edited or damaged");
   const std::string_view body = line.substr(0, line.size() - kTail);
@@ -48,7 +48,7 @@ ResponseLine parse_line(std::string_view line, const boost::crc_32_type& before,
   return json;
 }
 
-/// Reads the whole lines of `text`. @return their bytes.
+/// Reads the complete lines of `text`. @return their size in bytes.
 std::size_t read_lines(std::string_view text, const std::string& file,
                        std::vector<ResponseLine>& lines, boost::crc_32_type& sum) {
   std::size_t at = 0;
@@ -74,7 +74,7 @@ void write_all(int file, std::string_view bytes) {
   if (::fsync(file) != 0) throw InputError(std::strerror(errno));
 }
 
-/// So that the name of a new file is on the disk too.
+/// Syncs the folder, so that the name of a new file is on disk, too.
 void sync_folder_of(const std::string& path) {
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
   const int folder =
@@ -113,11 +113,11 @@ ResponseFile::ResponseFile(std::string path, ForeignLock foreign)
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0) fail(path_, "cannot be opened to write answers");
   try {
-    // beside the lock file, for versions of prostm and other programs that know none
+    // in addition to the lock file, for older versions of prostm and other programs that ignore it
     if (try_lock(file_, LockKind::Exclusive, path_) == LockResult::Held) {
       throw InputError(path_ +
-                       " is being written by another program; end that one, or take another "
-                       "number for the participant");
+                       " is being written by another program; close it, or give the participant "
+                       "another number");
     }
     const std::string text = read_file(path_, std::size_t{1} << 30, Empty::Allowed);
     size_ = read_lines(text, path_, lines_, sum_);
@@ -139,12 +139,12 @@ ResponseFile::~ResponseFile() {
 
 void ResponseFile::append(const ResponseLine& line) {
   std::string text = line.dump(-1, ' ', false, ResponseLine::error_handler_t::replace);
-  text.pop_back();  // the brace
+  text.pop_back();  // the closing brace
   text += std::string(kCheck) + check_of(sum_, text) + "\"}\n";
   try {
     write_all(file_, text);
   } catch (const InputError& error) {
-    // what was written of it goes again; a later start would put it aside
+    // removes a partly written line; otherwise the next start would move it aside
     static_cast<void>(::ftruncate(file_, static_cast<off_t>(size_)));
     throw InputError(fmt::format("{} could not be written: {}", path_, error.what()));
   }

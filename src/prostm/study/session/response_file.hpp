@@ -1,10 +1,10 @@
 #pragma once
-/// A participant's file: one JSON object on each line, appended and on the disk before anything
-/// else happens.
+/// A participant's file: one JSON object per line, appended and synced to disk before the session
+/// continues.
 ///
-/// Every line ends with `"check":"xxxxxxxx"`: the CRC-32 of all that stands before it in the file
-/// and of the line without it. So a line that was changed, moved, doubled or left out is found. A
-/// last line that was cut off, by a crash or a full disk, is put aside in a file of its own.
+/// Every line ends with `"check":"xxxxxxxx"`: the CRC-32 of the file up to that point, including
+/// the rest of the line. It detects lines that were changed, moved, duplicated or left out. An
+/// incomplete last line, after a crash or on a full disk, is moved to a separate file.
 
 #include <boost/crc.hpp>
 #include <cstdint>
@@ -21,18 +21,18 @@ inline constexpr const char* kResponseFormat = "prostm-responses/1";  ///< in th
 
 using ResponseLine = nlohmann::ordered_json;
 
-/// Reads all lines, without their checks. @param cut_off gets the bytes of a last line that is not
-/// whole. @throws InputError with file and line: no JSON, a check that is missing or does not
-/// match.
+/// Reads all lines and removes their checks. @param cut_off receives the bytes of an incomplete
+/// last line. @throws InputError with file and line: invalid JSON, a check that is missing or does
+/// not match.
 std::vector<ResponseLine> responses_from_text(std::string_view text, const std::string& file,
                                               std::string* cut_off = nullptr);
 
 class ResponseFile {
  public:
-  /// Begins a file, or goes on with one, and holds its lock file (core/file/lock_file.hpp). A last
-  /// line that is not whole is appended to PATH.cut-off and taken away. @throws InputError: it
-  /// cannot be opened or written, another program has it open, or what responses_from_text()
-  /// throws; then nothing has changed.
+  /// Creates or continues a file, and holds its lock file (core/file/lock_file.hpp). An incomplete
+  /// last line is removed and appended to PATH.cut-off. @throws InputError: the file cannot be
+  /// opened or written, another program has it open, or as responses_from_text(); nothing has
+  /// changed then.
   explicit ResponseFile(std::string path, ForeignLock foreign = ForeignLock::Respected);
   ~ResponseFile();
   ResponseFile(const ResponseFile&) = delete;
@@ -44,8 +44,8 @@ class ResponseFile {
   /// A sentence about a lock file that was replaced; empty if there was none.
   const std::string& lock_notice() const { return lock_.notice(); }
 
-  /// Writes a line, and waits until it is on the disk. @throws InputError: the disk is full, or the
-  /// write failed; then the file is as before.
+  /// Writes a line and waits until it is on disk. @throws InputError: the disk is full, or the
+  /// write failed; the file is then unchanged.
   void append(const ResponseLine& line);
 
  private:
@@ -53,7 +53,7 @@ class ResponseFile {
   LockFile lock_;
   int file_ = -1;
   std::uint64_t size_ = 0;  // [bytes]
-  boost::crc_32_type sum_;  // of all of it
+  boost::crc_32_type sum_;  // of the whole file
   std::vector<ResponseLine> lines_;
   bool found_cut_off_ = false;
 };

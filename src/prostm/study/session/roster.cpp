@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
-/// The number that orders follow, of a file without a replacement.
+/// The number that sets the orders, for a participant who replaces nobody.
 int own_order(const std::string& participant) {
   int order = 0;
   std::from_chars(participant.data(), participant.data() + participant.size(), order);

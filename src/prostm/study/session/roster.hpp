@@ -1,5 +1,5 @@
 #pragma once
-/// Who took part in a study, from the participants' files.
+/// The participants of a study, read from their files.
 
 #include <array>
 #include <cstddef>
@@ -16,43 +16,43 @@
 namespace prostm {
 
 enum class Attendance : std::uint8_t {
-  UnderWay,  ///< answers are missing, and the session can go on
-  Complete,  ///< all answers are there
+  UnderWay,  ///< answers are missing, and the session can be resumed
+  Complete,  ///< all answers were given
   Left       ///< withdrew
 };
 template <>
 inline constexpr std::array<std::string_view, 3> kNames<Attendance> = {"under way", "complete",
                                                                        "left"};
 
-/// A participant, as their file tells of them.
+/// A participant, as described by their file.
 struct RosterEntry {
   std::string file, participant;
-  std::string replaces;     ///< the participant whose place they took; empty: nobody's
-  int order = 0;            ///< number whose methods and orders they have: theirs, or that of
-                            ///< the first who had the place
+  std::string replaces;  ///< the participant they replace; empty: nobody
+  int order = 0;  ///< number that sets their methods and orders: their own, or that of the first
+                  ///< participant they replace, directly or through others
   std::size_t answers = 0;  ///< given
-  std::size_t trials = 0;   ///< in all, or at most
+  std::size_t trials = 0;   ///< total, or its upper limit
   Attendance attendance = Attendance::UnderWay;
   bool rehearsal = false;
   ResponseLine protocol;
 };
 
-/// Reads a participant's file. @return nothing: the file does not begin as one.
-/// @throws InputError: what responses_from_text() throws, a first line that is not whole.
+/// Reads a participant's file. @return nothing if it is not a participant's file. @throws
+/// InputError: as responses_from_text(); an incomplete first line.
 std::optional<RosterEntry> roster_entry(std::string_view text, const std::string& file);
 
-/// The files in a folder whose names end in .jsonl, in order. @throws InputError: no such folder.
+/// The .jsonl files in a folder, sorted by name. @throws InputError: no such folder.
 std::vector<std::string> response_files_in(const std::string& folder);
 
-/// Reads files; those of no participant are left out. @param faults gets the sentences of files
-/// that cannot be read; null: they are thrown. @throws InputError.
+/// Reads files and skips those that are not a participant's. @param faults receives the messages of
+/// files that cannot be read; null: they are thrown as InputError.
 std::vector<RosterEntry> read_roster(std::span<const std::string> files,
                                      std::vector<std::string>* faults = nullptr);
 
-/// The entry of a participant, by study::spelling_key(); null without one.
+/// The entry of a participant, compared by study::spelling_key(); null if not found.
 const RosterEntry* find_participant(std::span<const RosterEntry> roster, std::string_view id);
 
-/// The entry that took the place of this one; null if none did.
+/// The entry that replaces this participant; null if not replaced.
 const RosterEntry* replacement_of(std::span<const RosterEntry> roster, const RosterEntry& entry);
 
 }  // namespace prostm

@@ -18,8 +18,8 @@ using study::stamped;
 
 namespace {
 
-constexpr double kTryAgain = 1.0;     // between tries to write what could not be written [s]
-constexpr double kClockJump = 1.0;    // of the day's clock that is written down [s]
+constexpr double kTryAgain = 1.0;     // between attempts to write pending lines [s]
+constexpr double kClockJump = 1.0;    // smallest jump of the wall clock that is recorded [s]
 constexpr double kHandPeriod = 0.05;  // between poses in a trial's line [s]
 
 }  // namespace
@@ -59,7 +59,8 @@ void StudySession::enter(StudyPhase phase, double time) {
   wanted_ = still_air();
   if (phase != StudyPhase::Training) return;
   explored_ = 0;
-  wanted_ = exploring(!protocol_.trials.noise);  // noise is seen to play first
+  // with noise, training is silent until the page is seen to play it
+  wanted_ = exploring(!protocol_.trials.noise);
 }
 
 /// The method of the trial, without a stimulus.
@@ -67,7 +68,7 @@ StudyWanted StudySession::still_air() const {
   return {.method = trial().method};
 }
 
-/// The scene that is explored in training.
+/// The current scene of training.
 StudyWanted StudySession::exploring(bool sound) const {
   return {.method = trial().method,
           .scene = explored_,
@@ -125,7 +126,7 @@ void StudySession::settle(const StudySight& sight) {
   if (sight.time - since_ < protocol_.trials.rest) return;
   if (!sight.palm) {
     waits_for_ = "There is no hand above the array.";
-    wanted_ = still_air();  // so that jets blow under the hand when it is back
+    wanted_ = still_air();  // so that the jets start under the hand when it returns
     in_force_at_ = -1.0;
     return;
   }
@@ -157,9 +158,9 @@ void StudySession::settle(const StudySight& sight) {
 void StudySession::present(const StudySight& sight) {
   const double time = sight.time - since_;
   intervals_.look(sight.time, sight.in_force);
-  wanted_ = stimulus(intervals_.shows_level(), intervals_.sounds());
+  wanted_ = stimulus(intervals_.shows_level(), intervals_.is_playing());
   if (intervals_.is_over()) return;
-  if (intervals_.sounds() && intervals_.shows_level()) {
+  if (intervals_.is_playing() && intervals_.shows_level()) {
     strength_.target += sight.target_force;
     strength_.rendered += sight.rendered_force;
     ++strength_.looks;
@@ -170,7 +171,7 @@ void StudySession::present(const StudySight& sight) {
   hand_at_ = std::max(hand_at_ + kHandPeriod, sight.time);
 }
 
-/// Adds how the newest plan is played.
+/// Accumulates the emission of the newest plan.
 void StudySession::add_played(const StudySight& sight) {
   if (!sight.played) return;
   played_.speed += sight.played->speed;
@@ -179,7 +180,7 @@ void StudySession::add_played(const StudySight& sight) {
   ++played_.looks;
 }
 
-/// Means over the trial; null without a plan.
+/// Mean emission over the trial; null without a plan.
 nlohmann::ordered_json StudySession::played_json() const {
   if (played_.looks == 0) return nullptr;
   return prostm::played_json(
@@ -193,7 +194,7 @@ void StudySession::watch_clock(const StudySight& sight) {
   write({{line::kKind, line::kClock}, {"jump_s", rounded(jump, 3)}}, sight);
 }
 
-/// Writes a line, after those that could not be written before.
+/// Writes a line, after any pending lines.
 std::string StudySession::write(ResponseLine line, const StudySight& sight) {
   unwritten_.push_back(stamped(std::move(line), sight));
   return write_rest(sight.time);
@@ -236,7 +237,7 @@ ResponseLine StudySession::trial_line(std::optional<int> answer, const StudySigh
 
 std::string StudySession::answer(const StudyAct& act, const StudySight& sight) {
   if (!intervals_.takes_answer()) {
-    return fmt::format("{} intervals are to be felt before an answer",
+    return fmt::format("{} intervals must be felt before an answer",
                        task().traits().intervals == 2 ? "both" : "all");
   }
   const std::variant<int, std::string> read = task().answer_of(act);
@@ -250,7 +251,7 @@ std::string StudySession::answer(const StudyAct& act, const StudySight& sight) {
 }
 
 std::string StudySession::accept(const StudySight& sight) {
-  if (!intervals_.takes_answer()) return "both are to be felt before they are alike";
+  if (!intervals_.takes_answer()) return "both intervals must be felt before the match is accepted";
   end_trial(trial_line({}, sight), sight, [&] { course_.accept(*last_trial_->level); });
   return problem_;
 }
@@ -258,11 +259,11 @@ std::string StudySession::accept(const StudySight& sight) {
 std::string StudySession::tune(const StudyAct& act, const StudySight& sight) {
   course_.tune(act.steps, act.coarse);
   changes_.push_back({rounded(sight.time - since_, 3), *trial().level});
-  wanted_ = stimulus(intervals_.shows_level(), intervals_.sounds());
+  wanted_ = stimulus(intervals_.shows_level(), intervals_.is_playing());
   return {};
 }
 
-/// Writes a trial's line, and goes on to what follows it. @param count counts its answer.
+/// Writes a trial's line, and enters the next phase. @param count records its answer.
 void StudySession::end_trial(const ResponseLine& line, const StudySight& sight,
                              const std::function<void()>& count) {
   const double looks = std::max(1, strength_.looks);
@@ -289,14 +290,14 @@ void StudySession::end_trial(const ResponseLine& line, const StudySight& sight,
 
 std::string StudySession::correct(const StudySight& sight) {
   const std::vector<int> answers = task().answers();
-  if (answers.size() != 2) return "only one of two answers can be changed to the other";
+  if (answers.size() != 2) return "an answer can be changed only if there are two to choose from";
   if (!course_.correct())
     return "the last answer ended the staircases, so it can no longer be changed";
   last_ = *last_ == answers[0] ? answers[1] : answers[0];
   ResponseLine line = {{line::kKind, line::kCorrection}, {line::kTrial, trials_done()}};
   task().add_answer(line, protocol_, *last_trial_, *last_);
   if (protocol_.trials.feedback) feedback_ = line[line::kCorrect] == 1;
-  // another level may follow from another answer
+  // the changed answer may lead to another level
   if (phase_ == StudyPhase::Settling) enter(StudyPhase::Settling, sight.time);
   return write(line, sight);
 }
@@ -304,7 +305,7 @@ std::string StudySession::correct(const StudySight& sight) {
 std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
   using Do = StudyAct::Do;
   const auto refuse = [&] {
-    return fmt::format("\"{}\" is not for now: the session is at \"{}\"", name_of(act.what),
+    return fmt::format("\"{}\" is not possible now: the session is at \"{}\"", name_of(act.what),
                        name_of(phase_));
   };
   const bool over = phase_ == StudyPhase::Done || phase_ == StudyPhase::Withdrawn;
@@ -320,7 +321,7 @@ std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
     case Do::Explore:
       if (phase_ != StudyPhase::Training) return refuse();
       if (act.scene < 0 || act.scene >= static_cast<int>(protocol_.scenes.size()))
-        return "there is no such scene to explore";
+        return "there is no such scene";
       explored_ = act.scene;
       wanted_ = exploring(wanted_.sound);
       return {};

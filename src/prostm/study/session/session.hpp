@@ -1,6 +1,6 @@
 #pragma once
-/// One participant's way through a study: a state without threads or clocks, which is told what
-/// happens and says what is to be presented.
+/// The session of one participant: a state machine without threads or clocks. It receives events
+/// and returns the stimulus to present.
 
 #include <array>
 #include <cstdint>
@@ -23,15 +23,16 @@
 namespace prostm {
 
 enum class StudyPhase : std::uint8_t {
-  Consent,     ///< the participant reads, and agrees or leaves
-  About,       ///< the participant's answers about themselves
-  Training,    ///< scenes are explored
-  Ready,       ///< before the first trial of a method, and after a pause or a crash
-  Settling,    ///< silence: the smoke develops; the gate and the participant's page are waited for
-  Presenting,  ///< the stimulus is felt, and asked about
+  Consent,   ///< the participant reads the consent form, and agrees or leaves
+  About,     ///< the participant's answers about themselves
+  Training,  ///< the participant explores the scenes
+  Ready,     ///< before the first trial of a method, and after a pause or a crash
+  Settling,  ///< silence while the smoke develops, until the gate passes and the participant's page
+             ///< is ready
+  Presenting,  ///< the stimulus is presented, and the question asked
   Break,
   Paused,
-  Done,      ///< all answers are there
+  Done,      ///< all answers were given
   Withdrawn  ///< the participant left
 };
 template <>
@@ -39,47 +40,47 @@ inline constexpr std::array<std::string_view, 10> kNames<StudyPhase> = {
     "consent",    "about", "training", "ready", "settling",
     "presenting", "break", "paused",   "done",  "withdrawn"};
 
-/// The stimulus that is to be presented.
+/// The stimulus to present.
 struct StudyWanted {
-  int method = 0, scene = -1;  ///< places in the protocol; scene −1: still air
+  int method = 0, scene = -1;  ///< indices into the protocol; scene −1: still air
   bool sound = false;
   bool picture = false;              ///< the participant sees the simulation
-  std::optional<double> level = {};  ///< of the setting that is varied
-  bool standard = false;             ///< the protocol's standard, in place of the method
+  std::optional<double> level = {};  ///< level of the varied setting
+  bool standard = false;             ///< present the protocol's standard instead of the method
   bool operator==(const StudyWanted&) const = default;
 };
 
-/// The place of a participant who is replaced.
+/// The participant whom this one replaces.
 struct Replacement {
-  std::string participant;  ///< who had it
-  int order = 0;            ///< number whose methods and orders they had
+  std::string participant;  ///< the participant replaced
+  int order = 0;            ///< number that sets their methods and orders
 };
 
 class StudySession {
  public:
-  /// Goes on where the file ends; a new file gets its first line. Both must outlive this.
-  /// @param facts of the run for the first line: version, device, limits.
-  /// @param replaces whose methods and orders this participant gets, in place of their own.
-  /// @throws InputError: the file is of another protocol or participant, or has all answers.
+  /// Resumes the session of the file, or begins a new file. Protocol and file must outlive this.
+  /// @param facts the facts about the run for the first line: version, device, limits.
+  /// @param replaces the participant whose methods and orders this one gets, instead of their own.
+  /// @throws InputError: the file belongs to another protocol or participant, or is complete.
   StudySession(const Protocol& protocol, int participant, ResponseFile& file,
                const nlohmann::ordered_json& facts, const StudySight& now,
                const std::optional<Replacement>& replaces = {});
 
-  /// Time passes. @return what is to be presented from now on.
+  /// Advances to the time of `sight`. @return the stimulus to present from now on.
   const StudyWanted& look(const StudySight& sight);
 
-  /// @return an empty text, or the sentence that says why not. An answer that could not be written
-  /// is kept, and written before anything else happens.
+  /// Performs an act. @return an empty text, or a sentence that says why it was refused or not
+  /// written. An answer that could not be written is kept and written first at the next attempt.
   std::string take(const StudyAct& act, const StudySight& sight);
 
-  /// Writes down a marker that was sent. @return as take() does.
+  /// Records a marker that was sent. @return as take() does.
   std::string note(ResponseLine marker, const StudySight& sight) {
     return write(std::move(marker), sight);
   }
 
-  /// Tries once more to write what could not be written. @return as take() does.
+  /// Tries once more to write the unwritten lines. @return as take() does.
   std::string finish(double time) { return write_rest(time); }
-  /// Lines that could not be written so far.
+  /// Lines that could not yet be written.
   const std::vector<ResponseLine>& unwritten() const { return unwritten_; }
 
   StudyPhase phase() const { return phase_; }
@@ -89,46 +90,48 @@ class StudySession {
   bool closed() const { return closed_; }  ///< the run may end
   std::size_t trials_done() const { return course_.done(); }
   const Course& course() const { return course_; }
-  /// The trial that is next or under way. @pre not all are done.
+  /// The next trial, or the one in progress. @pre not all trials are done.
   const Trial& trial() const { return course_.trial(); }
-  /// The interval of a trial that sounds, from 1; 0 in silence, and where a trial has only one.
+  /// The current interval of the trial, from 1; 0 during silence, or if there is only one.
   int interval() const { return phase_ == StudyPhase::Presenting ? intervals_.interval() : 0; }
-  /// Whether an answer is taken now.
+  /// Whether an answer can be given now.
   bool takes_answer() const {
     return phase_ == StudyPhase::Presenting && intervals_.takes_answer();
   }
   double training_left() const { return training_left_; }  ///< [s]
-  int explored() const { return explored_; }               ///< scene of Training
+  int explored() const { return explored_; }               ///< current scene in Training
   const std::optional<GateResult>& gate() const { return gate_; }
-  /// The number of the last answer, as files have it; nothing before the first.
+  /// The number of the last answer, as in files; nothing before the first.
   std::optional<int> last_answer() const { return last_; }
-  /// Why the trial does not begin, as things are; empty where it does.
+  /// The reason why the trial cannot begin yet; empty if it can.
   const std::string& waits_for() const { return waits_for_; }
-  /// A sentence on the first need that the participant's page lacks, with the remedy; else empty.
+  /// A sentence about the first unmet need of the participant's page, with the remedy; empty if
+  /// none.
   std::string page_problem() const { return sentence(page_.told()); }
-  /// Staircases that stand at an end of their range, in a sentence; empty if none does.
+  /// A sentence about staircases at an end of their range; empty if no staircase is.
   std::string at_bound() const;
-  /// Reads the oldest sentence for the experimenter that was not read yet; false without one.
+  /// Takes the oldest pending message for the experimenter; false if no message is pending.
   bool next_news(std::string& sentence);
-  /// Whether the last answer was right; nothing before the first and without feedback.
+  /// Whether the last answer was right; nothing before the first, or without feedback.
   std::optional<bool> feedback() const { return feedback_; }
-  /// The sentence of a write that failed, until one succeeds.
+  /// The message of a failed write, until one succeeds.
   const std::string& problem() const { return problem_; }
-  /// The largest difference in rendered force (Eq. (1)) between the scenes of one method, over the
-  /// larger: a cue to which scene it is. Methods are not compared: they have the same scenes, and
-  /// Eq. (1) does not measure their strengths alike. 0 where trials have levels.
+  /// The largest relative difference in rendered force (Eq. (1)) between two scenes of one method,
+  /// over the larger force: a difference that could reveal the scene. Methods are not compared: all
+  /// have the same scenes, and Eq. (1) does not measure their strengths equally. 0 if trials have
+  /// levels.
   double strength_difference() const;
-  /// A sentence where this is more than the protocol allows, else empty.
+  /// A sentence if this exceeds the protocol's limit, else empty.
   std::string strengths() const;
 
  private:
   struct Strength {
-    double target = 0.0, rendered = 0.0;  // sums over looks [N]
+    double target = 0.0, rendered = 0.0;  // sums over samples [N]
     int looks = 0;
   };
   struct Played {
-    double speed = 0.0, period = 0.0;  // sums over looks [m/s], [s]
-    int looks = 0, changed = 0;        // changed: most paths
+    double speed = 0.0, period = 0.0;  // sums over samples [m/s], [s]
+    int looks = 0, changed = 0;        // changed: largest number of paths
   };
 
   const Task& task() const { return *protocol_.trials.task; }
@@ -171,17 +174,17 @@ class StudySession {
   const Protocol& protocol_;
   const int participant_;
   ResponseFile& file_;
-  Course course_;  // with the answers that are on the disk
+  Course course_;  // with the recorded answers
   Intervals intervals_;
-  std::optional<Trial> last_trial_;  // that was answered
+  std::optional<Trial> last_trial_;  // the last one answered
   StudyPhase phase_ = StudyPhase::Ready;
   StudyWanted wanted_;
-  double since_ = 0.0;         // the phase began [s]
-  double in_force_at_ = -1.0;  // since when what is wanted is, in Settling; −1: it is not
+  double since_ = 0.0;         // start of the phase [s]
+  double in_force_at_ = -1.0;  // when the wanted stimulus came into force; −1: it has not
   double training_left_ = 0.0, looked_ = 0.0;  // [s]
   int explored_ = 0;
-  bool anyway_ = false;    // the gate is passed over
-  PageNeeds passed_over_;  // and what the page lacked then
+  bool anyway_ = false;    // the gate is overridden
+  PageNeeds passed_over_;  // needs of the page that were overridden
   PageWatch page_;
   bool closed_ = false;
   std::optional<GateResult> gate_, gate_at_onset_;
@@ -190,14 +193,14 @@ class StudySession {
   std::optional<int> last_;
   std::vector<ResponseLine> unwritten_;
   std::vector<std::string> news_;
-  double tried_ = 0.0;                      // to write them [s]
-  double utc_offset_ = 0.0;                 // of the two clocks [s]
-  Strength strength_;                       // of the trial
-  Played played_;                           // of the trial
-  std::vector<Strength> strengths_;         // of each method and scene, over trials
-  std::optional<double> begun_with_;        // level of the trial
-  nlohmann::ordered_json changes_;          // of it: [s, level]
-  nlohmann::ordered_json hand_;             // of the trial: [s, x, y, z in mm, quaternion]
+  double tried_ = 0.0;                // time of the last attempt to write [s]
+  double utc_offset_ = 0.0;           // Unix time minus the steady clock [s]
+  Strength strength_;                 // of the trial
+  Played played_;                     // of the trial
+  std::vector<Strength> strengths_;   // sums over trials, for each method and scene
+  std::optional<double> begun_with_;  // initial level of the trial
+  nlohmann::ordered_json changes_;    // level changes of the trial: [s, level]
+  nlohmann::ordered_json hand_;       // poses during the trial: [s, x, y, z in mm, quaternion]
   double hand_at_ = 0.0, hand_gone_ = 0.0;  // [s]
 };
 

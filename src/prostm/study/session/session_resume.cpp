@@ -1,4 +1,4 @@
-/// How a session begins its file, or is resumed from it.
+/// Begins a session's file, or resumes a session from it.
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ int answer_in(const ResponseLine& line, const std::string& file) {
 
 }  // namespace
 
-/// The first line of the file, without the facts of the run.
+/// The first line of the file, without the facts about the run.
 ResponseLine StudySession::first_line(const std::optional<Replacement>& replaces) const {
   ResponseLine first = {{line::kKind, line::kBegin},
                         {line::kFormat, kResponseFormat},
@@ -87,7 +87,7 @@ StudyPhase StudySession::replay() {
     if (kind == line::kCorrection) repeat_correction(line);
     if (kind == line::kInterrupted) page_.interrupt();
     if (kind != line::kTrial) continue;
-    if (course_.is_done()) throw InputError(file_.path() + " has more trials than there are");
+    if (course_.is_done()) throw InputError(file_.path() + " has more trials than its protocol");
     repeat_trial(line);
     if (starts_method()) trained = false;
   }
@@ -105,8 +105,8 @@ void StudySession::repeat_trial(const ResponseLine& line) {
   const double level = t.level ? study::number_in(line, line::kLevel, file_.path()) : 0.0;
   if (t.level && !task().is_tuned() && std::abs(level - *t.level) > 1e-5 * std::abs(*t.level)) {
     throw InputError(fmt::format(
-        "{}: trial {} has level {:g}, and its staircase asks for {:g}; go on with the version of "
-        "prostm that it was begun with",
+        "{}: trial {} has level {:g}, but its staircase asks for {:g}; resume with the version of "
+        "prostm that began the file",
         file_.path(), trials_done() + 1, level, *t.level));
   }
   const auto force = [&](const char* key) {
@@ -122,7 +122,8 @@ void StudySession::repeat_trial(const ResponseLine& line) {
 
 void StudySession::repeat_correction(const ResponseLine& line) {
   last_ = answer_in(line, file_.path());
-  if (!course_.correct()) throw InputError(file_.path() + " corrects what cannot be corrected");
+  if (!course_.correct())
+    throw InputError(file_.path() + " corrects an answer that cannot be corrected");
 }
 
 }  // namespace prostm

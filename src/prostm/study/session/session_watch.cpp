@@ -1,5 +1,5 @@
-/// The parts of a session that watch it: the participant's page, staircases at an end of their
-/// range, and the strength of scenes.
+/// Monitoring within a session: the participant's page, staircases at an end of their range, and
+/// the strength of scenes.
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ PageTask StudySession::page_task() const {
   return task;
 }
 
-/// Writes down what the page lacks, and presents a trial again that it did not do its part in.
+/// Records unmet needs of the page, and restarts a trial during which one was unmet.
 void StudySession::watch_page(const StudySight& sight) {
   if (phase_ == StudyPhase::Done || phase_ == StudyPhase::Withdrawn) return;
   if (page_.look(page_task(), sight.page, sight.time)) {
@@ -42,7 +42,7 @@ void StudySession::watch_page(const StudySight& sight) {
         sight);
 }
 
-/// Writes down that the track of the last answer has just come to stand at an end of its range.
+/// Records that the track of the last answer has just reached an end of its range.
 void StudySession::note_bound(const StudySight& sight) {
   if (course_.lanes().empty()) return;
   const int number = last_trial_->track;
@@ -83,7 +83,7 @@ void StudySession::add_strength(const Trial& trial, double target, double render
 }
 
 double StudySession::strength_difference() const {
-  if (task().traits().has_levels) return 0.0;  // levels are to differ
+  if (task().traits().has_levels) return 0.0;  // levels differ on purpose
   const std::size_t scenes = protocol_.scenes.size();
   double worst = 0.0;
   for (std::size_t method = 0; method < protocol_.methods.size(); ++method) {
@@ -103,7 +103,7 @@ std::string StudySession::strengths() const {
   const double difference = strength_difference();
   if (difference <= protocol_.trials.strength) return {};
   return fmt::format(
-      "Scenes of one method differ in strength by {:.0f} %, and the protocol allows {:.0f} %: "
+      "Scenes of one method differ in strength by {:.0f} % (the protocol allows {:.0f} %): "
       "strength may be a cue.",
       100.0 * difference, 100.0 * protocol_.trials.strength);
 }

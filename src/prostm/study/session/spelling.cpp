@@ -29,7 +29,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Calls `use` with each character and its bytes; bytes that are no UTF-8 are left out.
+/// Calls `use` with each character and its bytes; skips bytes that are not valid UTF-8.
 template <class Use>
 void each_character(std::string_view text, const Use& use) {
   const auto* bytes = reinterpret_cast<const utf8proc_uint8_t*>(text.data());
@@ -42,7 +42,7 @@ void each_character(std::string_view text, const Use& use) {
   }
 }
 
-/// The text in Unicode's form NFKC_Casefold; empty if it is no UTF-8.
+/// The text in Unicode's form NFKC_Casefold; empty if it is not valid UTF-8.
 std::string folded(std::string_view text) {
   constexpr auto kForm = static_cast<utf8proc_option_t>(
       UTF8PROC_STABLE | UTF8PROC_COMPOSE | UTF8PROC_COMPAT | UTF8PROC_CASEFOLD | UTF8PROC_IGNORE);
@@ -54,8 +54,8 @@ std::string folded(std::string_view text) {
   return {reinterpret_cast<const char*>(out), static_cast<std::size_t>(size)};
 }
 
-/// Leaves out leading zeros of whole numbers, and the decimal mark with the zeros after it where
-/// nothing else follows it. A fraction keeps its digits.
+/// Removes leading zeros of whole numbers, and a decimal mark followed only by zeros. Other
+/// fractions keep their digits.
 std::string with_plain_numbers(const std::string& text) {
   std::string out;
   for (std::size_t at = 0; at < text.size();) {

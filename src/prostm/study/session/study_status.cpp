@@ -11,7 +11,7 @@
 namespace prostm {
 namespace {
 
-/// The part of a protocol that orders of methods depend on. @throws InputError.
+/// The part of a protocol that determines the order of methods. @throws InputError.
 Protocol order_part(const RosterEntry& entry) {
   Protocol protocol;
   try {
@@ -29,7 +29,7 @@ Protocol order_part(const RosterEntry& entry) {
     throw InputError(fmt::format("{}, line 1: protocol: {}", entry.file, error.what()));
   }
   if (protocol.methods.empty() || entry.order < 1)
-    throw InputError(entry.file + ", line 1: no method, or a participant that is no number");
+    throw InputError(entry.file + ", line 1: no method, or a participant that is not a number");
   return protocol;
 }
 

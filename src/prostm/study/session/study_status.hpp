@@ -1,5 +1,5 @@
 #pragma once
-/// How full the groups of a study are.
+/// The number of participants in each group of a study.
 
 #include <span>
 #include <string>
@@ -11,21 +11,21 @@ namespace prostm {
 
 /// The participants who get the same methods in the same order.
 struct GroupStatus {
-  std::vector<std::string> methods;           ///< in the order in which they come
-  int planned = 0;                            ///< numbers up to the protocol's `study.participants`
-  int complete = 0, under_way = 0, left = 0;  ///< who hold a place: those replaced hold none
-  std::vector<int> open;                      ///< planned numbers whose place nobody holds
+  std::vector<std::string> methods;  ///< in order of presentation
+  int planned = 0;                   ///< planned participants, numbered up to `study.participants`
+  int complete = 0, under_way = 0, left = 0;  ///< participants, without those who were replaced
+  std::vector<int> open;                      ///< planned numbers that nobody has taken
 };
 
 struct StudyStatus {
   std::string title;
-  int planned = 0;                        ///< participants
-  std::vector<GroupStatus> groups;        ///< as they come first among the numbers
-  std::vector<RosterEntry> participants;  ///< by their file's name
+  int planned = 0;                        ///< planned participants
+  std::vector<GroupStatus> groups;        ///< in order of their first number
+  std::vector<RosterEntry> participants;  ///< sorted by file name
 };
 
-/// Sorts participants by the protocol that they had, and counts. @throws InputError: a participant
-/// has two files, a protocol that is not whole.
+/// Groups participants by protocol, and counts them. @throws InputError: a participant with two
+/// files, an incomplete protocol.
 std::vector<StudyStatus> study_status(std::span<const RosterEntry> roster);
 
 /// The methods of a participant, in order.

@@ -1,5 +1,5 @@
 #pragma once
-/// The meaning of answers, by which they are analysed.
+/// The meaning of answers, which decides how they are analysed.
 
 #include <array>
 #include <cstdint>
@@ -11,9 +11,9 @@ namespace prostm {
 
 /// The meaning of an answer.
 enum class AnswerKind : std::uint8_t {
-  Right,    ///< it was right or wrong
-  Felt,     ///< it was for the level or not: yes, or its interval, and neither is wrong
-  Adjusted  ///< the level was tuned until it felt like another stimulus
+  Right,    ///< right or wrong
+  Felt,     ///< for the level (yes, or its interval) or against it; neither is wrong
+  Adjusted  ///< the level at which the stimulus felt like another one
 };
 template <>
 inline constexpr std::array<std::string_view, 3> kNames<AnswerKind> = {"right", "felt", "adjusted"};

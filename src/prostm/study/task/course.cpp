@@ -33,7 +33,7 @@ Course::Course(const Protocol& protocol, int participant)
   next_lane();
 }
 
-/// Goes on to the next track, and to the next method where all of this one's are done.
+/// Moves to the next track, or to the next method if all tracks of this one are done.
 void Course::next_lane() {
   const auto is_open = [&](std::size_t i) {
     return lanes_[i].method == methods_[method_] && !lanes_[i].track.is_done();
@@ -61,7 +61,7 @@ bool Course::is_done() const {
   return method_ == methods_.size();
 }
 
-/// After an answer.
+/// Advances after an answer.
 void Course::step() {
   const int before = trial_.method;
   if (!lanes_.empty()) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The trials of one participant, of which the later ones may depend on the answers to the earlier.
+/// The trials of one participant. Later trials may depend on the answers to earlier ones.
 
 #include <cstddef>
 #include <vector>
@@ -10,15 +10,15 @@
 
 namespace prostm {
 
-/// A state without a clock: the same protocol, participant and answers lead to the same trials.
+/// Does not depend on time: the same protocol, participant and answers give the same trials.
 ///
 /// A task without levels has a list of trials. Other tasks have tracks: for each method, in the
-/// order of method_order(), `tracks` searches in each scene. They are taken in turn: in every round
-/// each that is not done comes once, in a random order. Which interval is the level's is drawn for
-/// each trial.
+/// order of method_order(), `tracks` searches in each scene. Tracks are interleaved: in every round
+/// each unfinished track has one trial, in random order. For each trial, the interval that has the
+/// level is drawn at random.
 class Course {
  public:
-  /// A track, and what it is presented with.
+  /// A track with its method and scene, and the random numbers for its intervals.
   struct Lane {
     int method = 0, scene = 0;
     Track track;
@@ -29,27 +29,27 @@ class Course {
   Course(const Protocol& protocol, int participant);
 
   bool is_done() const;
-  /// The trial that is next or under way. @pre !is_done().
+  /// The next trial, or the one in progress. @pre !is_done().
   const Trial& trial() const { return trial_; }
-  /// Whether it is the first with its method.
+  /// Whether this trial is the first with its method.
   bool starts_method() const { return starts_method_; }
   std::size_t done() const { return given_.size(); }
-  std::size_t most() const { return most_; }  ///< trials in all, or at most
-  bool is_open() const { return open_; }      ///< whether they may become fewer
+  std::size_t most() const { return most_; }  ///< total number of trials, or its upper limit
+  bool is_open() const { return open_; }      ///< whether most() is only an upper limit
 
-  /// Takes an answer. @param felt of a staircase: it was for the level.
+  /// Records an answer. @param felt for staircases: whether the answer was for the level.
   void answer(bool felt);
-  /// The other answer to the trial before. @return false, and nothing is changed: that would change
-  /// which trials there are. @pre one was answered, and not an adjustment.
+  /// Changes the previous answer to the other one. @return false, with nothing changed, if that
+  /// would change which trials there are. @pre a trial was answered, and it was not an adjustment.
   bool correct();
-  /// Changes the level of an adjustment that is under way.
+  /// Changes the level of the adjustment in progress.
   void tune(int steps, bool coarse);
-  /// Ends it at a level.
+  /// Ends the adjustment at a level.
   void accept(double level);
 
-  /// Tracks by their number less 1; none without levels.
+  /// Tracks, indexed by track number − 1; empty for tasks without levels.
   const std::vector<Lane>& lanes() const { return lanes_; }
-  /// The level that a track, from 1, has found so far; NaN before there is any.
+  /// Current estimate of a track (numbered from 1); NaN before the first.
   double result(int track) const;
 
  private:
@@ -59,11 +59,11 @@ class Course {
 
   const Protocol* protocol_;
   int participant_;
-  std::vector<Trial> list_;  // of a task without levels
+  std::vector<Trial> list_;  // for tasks without levels
   std::vector<Lane> lanes_;
   std::vector<int> methods_;
-  std::size_t method_ = 0;          // place in methods_
-  std::vector<std::size_t> round_;  // lanes that are still to come in this round, backwards
+  std::size_t method_ = 0;          // index into methods_
+  std::vector<std::size_t> round_;  // lanes left in this round, in reverse order
   Random turns_;
   Trial trial_;
   bool starts_method_ = true, open_ = false;

@@ -1,5 +1,5 @@
 #pragma once
-/// The words of a participant's file (docs/study/study-files.md): kinds of lines, and the keys that
+/// Names in a participant's file (docs/study/study-files.md): kinds of lines, and the keys that
 /// more than one part of prostm writes or reads.
 
 namespace prostm::line {
@@ -54,10 +54,10 @@ inline constexpr const char* kRendered = "rendered_mn";
 inline constexpr const char* kHandGone = "hand_gone_s";
 inline constexpr const char* kPlayed = "played";
 inline constexpr const char* kHand = "hand";
-inline constexpr const char* kStart = "start";      // level of a tuned trial
-inline constexpr const char* kChanges = "changes";  // of it
+inline constexpr const char* kStart = "start";      // initial level of an adjustment
+inline constexpr const char* kChanges = "changes";  // level changes of an adjustment
 
-// keys of the end
+// keys of the last line
 inline constexpr const char* kStrengths = "strengths";
 
 }  // namespace prostm::line

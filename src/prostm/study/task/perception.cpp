@@ -3,8 +3,8 @@
 namespace prostm {
 namespace {
 
-constexpr double kSlope = 20.0;  // over the range of levels
-constexpr double kNoise = 0.02;  // of distances, of the range
+constexpr double kSlope = 20.0;  // times the range of levels
+constexpr double kNoise = 0.02;  // of distances, as a share of the range
 
 }  // namespace
 

@@ -5,11 +5,11 @@
 namespace prostm {
 namespace {
 
-constexpr double kSlope = 20.0;   // of bayes, over the range
-constexpr double kSpread = 0.25;  // of its prior, of the range
+constexpr double kSlope = 20.0;   // of the Bayesian staircase, times the range
+constexpr double kSpread = 0.25;  // of its prior, as a share of the range
 constexpr double kLapses = 0.02;
-constexpr double kAway = 0.25;   // from the middle that adjustments begin, of the range
-constexpr double kCoarse = 4.0;  // steps of a coarse one
+constexpr double kAway = 0.25;   // first level to the middle, over the range
+constexpr double kCoarse = 4.0;  // fine steps per coarse step
 
 double width_of(const LevelRange& range) {
   return range.high - range.low;

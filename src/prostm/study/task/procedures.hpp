@@ -1,5 +1,5 @@
 #pragma once
-/// The procedures that search for a level, as protocols describe them.
+/// Builds the level-finding procedures that protocols describe.
 
 #include <cstdint>
 #include <variant>
@@ -9,15 +9,15 @@
 
 namespace prostm {
 
-/// The search for the next level of a track.
+/// The procedure that chooses the next level of a track.
 using Procedure = std::variant<WeightedUpDown, BayesianStaircase, Adjustment>;
 
-/// The staircase that [level] asks for: up-down, or bayes. @param guess share of answers for the
-/// level that guessing makes, 0..1. @throws std::invalid_argument: a setting that the staircase
-/// does not take.
+/// The staircase that [level] asks for: up-down, or bayes. @param guess the guess rate: share of
+/// answers for the level when guessing, 0..1. @throws std::invalid_argument: a setting that is
+/// invalid for the staircase.
 Procedure staircase_of(const LevelSettings& level, double guess);
 
-/// Adjustments, one after the other, in a track. @param repeats how many.
+/// The successive adjustments of a track. @param repeats number of adjustments.
 /// @throws std::invalid_argument as staircase_of() does.
 Procedure adjustments_of(const LevelSettings& level, int repeats, std::uint64_t seed);
 

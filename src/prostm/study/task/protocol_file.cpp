@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
 
-/// [trials], with the task by its name among those that are known.
+/// [trials], with the task looked up by name among the known tasks.
 class TrialTable {
  public:
   /// @pre `trials` outlives this, and its task is one of `tasks`.
@@ -37,7 +37,7 @@ class TrialTable {
   }
 
  private:
-  static constexpr Setting kTask = {.name = "task", .help = "of the participant in a trial"};
+  static constexpr Setting kTask = {.name = "task", .help = "the participant's task in a trial"};
 
   int place() const {
     return static_cast<int>(std::find(tasks_.begin(), tasks_.end(), trials_.task) - tasks_.begin());
@@ -53,21 +53,21 @@ std::vector<std::string> names_in(std::string_view text, const std::string& file
                                   const std::string& table, std::size_t least) {
   std::vector<std::string> names = tables_in_toml(text, file, table);
   if (names.size() < least) {
-    throw InputError(fmt::format("{} has {} [{}.NAME], and a study needs {} at least", file,
+    throw InputError(fmt::format("{} has {} [{}.NAME]; a study needs at least {}", file,
                                  names.size(), table, least));
   }
   return names;
 }
 
-/// @throws InputError: a method gives what scenes give, or what cannot change during a run.
+/// @throws InputError: a method sets what belongs to scenes, or what cannot change during a run.
 void refuse_settings_of_the_run(const std::vector<std::string>& given, const std::string& file,
                                 const std::string& method) {
   for (const char* fixed : {"pipeline.world", "pipeline.scene", "pipeline.device", "pipeline.array",
                             "pipeline.tracker", "pipeline.world_rate", "pipeline.threads"}) {
     if (std::find(given.begin(), given.end(), fixed) == given.end()) continue;
     throw InputError(fmt::format(
-        "{}: [method.{}] gives {}, which is the same for all trials; give it on the command line, "
-        "and scenes as [scene.NAME]",
+        "{}: [method.{}] sets {}, which is fixed for all trials; set it on the command line, and "
+        "scenes as [scene.NAME]",
         file, method, fixed));
   }
 }
@@ -119,8 +119,8 @@ Protocol protocol_from_toml(std::string_view text, const std::string& file,
   const std::size_t conditions = protocol.methods.size() * protocol.scenes.size();
   if (protocol.markers.conditions && conditions > kMostMarkedConditions) {
     throw InputError(fmt::format(
-        "{}: markers.conditions is true for {} conditions, methods times scenes, and there are "
-        "codes for {}; leave it out, or take fewer",
+        "{}: markers.conditions needs a code for each of {} conditions (methods times scenes), but "
+        "there are {} codes; leave it out, or use fewer conditions",
         file, conditions, kMostMarkedConditions));
   }
   return protocol;

@@ -13,7 +13,7 @@
 namespace prostm {
 namespace {
 
-/// The logarithm of the likelihood of a share of right answers, without the binomial coefficient.
+/// Log-likelihood of a share of right answers, without the binomial coefficient.
 double log_likelihood(const Proportion& correct, double share) {
   constexpr double kLeast = 1e-300;  // keeps the logarithm finite
   const int wrong = correct.trials - correct.successes;
@@ -23,14 +23,14 @@ double log_likelihood(const Proportion& correct, double share) {
   return sum;
 }
 
-/// A function that jumps from guessing to the most.
+/// A function that jumps from the lower to the upper asymptote.
 struct Step {
-  double value = -HUGE_VAL;  // its likelihood
-  Interval between;          // the levels where it jumps; equal ones: at that level
+  double value = -HUGE_VAL;  // its log-likelihood
+  Interval between;          // the levels between which it jumps; if equal, it jumps at that level
 };
 
-/// The likelihood of answers as a function of threshold and the logarithm of the slope. A lapse
-/// rate that is not given is that of the largest likelihood.
+/// Log-likelihood of answers as a function of threshold and log slope. A lapse rate that is not
+/// given is maximised over.
 class Likelihood {
  public:
   /// @param scores by level, ascending.
@@ -43,8 +43,8 @@ class Likelihood {
 
   double range() const { return range_; }
   std::span<const LevelScore> scores() const { return scores_; }
-  /// Thresholds are looked for a range beyond the levels, slopes from one that hardly grows over
-  /// them to one that is a step.
+  /// Search bounds: thresholds up to one range beyond the levels, slopes from nearly flat over the
+  /// levels to a step.
   double lowest_threshold() const { return first_ - range_; }
   double highest_threshold() const { return first_ + 2.0 * range_; }
   double lowest_slope() const { return std::log(0.1 / range_); }
@@ -65,8 +65,8 @@ class Likelihood {
     return sum;
   }
 
-  /// The step of the largest likelihood: between two levels, beyond all, or at a level, whose own
-  /// share is then free.
+  /// The maximum-likelihood step: between two levels, beyond all levels, or at a level, whose share
+  /// is then a free parameter.
   Step best_step() const {
     Step best;
     const std::size_t n = scores_.size();
@@ -84,18 +84,18 @@ class Likelihood {
     return best;
   }
 
-  /// The largest likelihood with this threshold, over slopes.
+  /// Profile likelihood of a threshold: the maximum over slopes.
   double over_slopes(double threshold) const {
     return most([&](double s) { return at(threshold, s); }, lowest_slope(), highest_slope());
   }
-  /// The largest likelihood with this slope, over thresholds.
+  /// Profile likelihood of a slope: the maximum over thresholds.
   double over_thresholds(double log_slope) const {
     return most([&](double t) { return at(t, log_slope); }, lowest_threshold(),
                 highest_threshold());
   }
 
  private:
-  /// The likelihood of a step before level `first`. @param free the level whose share is free, if
+  /// Log-likelihood of a step before level `first`. @param free the level whose share is free, if
   /// any.
   double step(std::size_t first, std::size_t free) const {
     Proportion above;
@@ -115,8 +115,8 @@ class Likelihood {
     return sum;
   }
 
-  /// The lapse rate of the largest likelihood, which is concave in it: Newton's method, halving
-  /// where that leaves the bounds.
+  /// The maximum-likelihood lapse rate. The likelihood is concave in it: Newton's method, with
+  /// bisection where a step leaves the bounds.
   double best_lapse(const Psychometric& psi) const {
     constexpr double kLeast = 1e-12;  // keeps quotients finite
     const auto slopes = [&](double lapse) {
@@ -152,7 +152,7 @@ class Likelihood {
     return lapse;
   }
 
-  /// The largest value between two ends: a scan, then Brent's method around the best of it.
+  /// The maximum between two ends: a scan, then Brent's method around the best point.
   template <class F>
   double most(const F& f, double low, double high) const {
     constexpr int kScan = 48, kBits = 40;
@@ -180,7 +180,7 @@ struct Peak {
   double threshold = 0.0, log_slope = 0.0, value = -HUGE_VAL;
 };
 
-/// The best of a grid of thresholds and slopes.
+/// The best point of a grid of thresholds and slopes.
 Peak scan(const Likelihood& likelihood) {
   constexpr int kThresholds = 90, kSlopes = 60;
   Peak best;
@@ -197,14 +197,14 @@ Peak scan(const Likelihood& likelihood) {
   return best;
 }
 
-/// A step towards the largest likelihood, in threshold and logarithm of the slope.
+/// A step towards the maximum likelihood, in threshold and log slope.
 struct Move {
   double threshold = 0.0, log_slope = 0.0;
 };
 
-/// One step of Fisher scoring: the gradient over the expected curvature. A lapse rate that is
-/// fitted follows both, which the curvature takes into account. Nothing where there is no
-/// curvature.
+/// One step of Fisher scoring: the gradient over the expected curvature. A fitted lapse rate
+/// depends on both parameters, and the curvature accounts for this. Nothing if the curvature
+/// vanishes.
 std::optional<Move> fisher_step(const Likelihood& likelihood, const Peak& peak) {
   const Psychometric psi = likelihood.function(peak.threshold, peak.log_slope);
   const double scale = 1.0 - psi.guess - psi.lapse;
@@ -237,7 +237,7 @@ std::optional<Move> fisher_step(const Likelihood& likelihood, const Peak& peak) 
   return Move{(ss * gt - ts * gs) / determinant, (tt * gs - ts * gt) / determinant};
 }
 
-/// Climbs by Fisher scoring, with half the step where that is too far.
+/// Climbs by Fisher scoring, halving steps that overshoot.
 Peak climb(const Likelihood& likelihood, Peak peak) {
   constexpr int kSteps = 100, kHalvings = 30;
   for (int step = 0; step < kSteps; ++step) {
@@ -259,7 +259,7 @@ Peak climb(const Likelihood& likelihood, Peak peak) {
   return peak;
 }
 
-/// Where a profile falls to a bound between its peak and an end of the search.
+/// The point between a profile's peak and an end of the search where the profile falls to a bound.
 template <class Profile>
 std::optional<double> end_of(const Profile& profile, double peak, double end, double bound) {
   const auto above = [&](double x) { return profile(x) - bound; };
@@ -272,7 +272,7 @@ std::optional<double> end_of(const Profile& profile, double peak, double end, do
   return 0.5 * (found.first + found.second);
 }
 
-/// Both of them; an open end is infinite.
+/// Both ends of the interval; an unbounded end is infinite.
 template <class Profile>
 Interval interval(const Profile& profile, double peak, double low, double high, double bound) {
   if (!(profile(peak) > bound)) return {-HUGE_VAL, HUGE_VAL};
@@ -288,7 +288,7 @@ double fall_at(double level) {
   return 0.5 * boost::math::quantile(boost::math::chi_squared(1.0), level);
 }
 
-/// The thresholds whose largest likelihood over slopes is near `most`.
+/// The thresholds whose profile likelihood is close to `most`.
 Interval threshold_interval(const Likelihood& likelihood, double threshold, double most,
                             double level) {
   const double low = likelihood.lowest_threshold(), high = likelihood.highest_threshold();
@@ -315,7 +315,8 @@ double trend(std::span<const LevelScore> scores) {
   return variance > 0.0 ? sum / std::sqrt(variance) : 0.0;
 }
 
-/// Bounds from answers at one level: whether their share is above or below that at the threshold.
+/// Bounds from answers at one level, by whether their share is above or below the share at the
+/// threshold.
 PsychometricResult at_one_level(std::span<const LevelScore> scores,
                                 const PsychometricSettings& settings) {
   PsychometricResult out;
@@ -334,13 +335,13 @@ PsychometricResult at_one_level(std::span<const LevelScore> scores,
   return out;
 }
 
-/// Why there is no fit, and the bounds that are left. @param best of the step, if a step fits as
-/// well as any slope.
+/// The reason why there is no fit, and the remaining bounds. @param best bounds of the step, if a
+/// step fits as well as any slope.
 PsychometricResult without_fit(const Likelihood& likelihood, const std::optional<Interval>& best,
                                const Interval& found) {
   PsychometricResult out;
   const auto scores = likelihood.scores();
-  // the steepest slope of the search is no step, so that its interval ends short of a level
+  // the steepest slope of the search is not quite a step, so its interval ends short of a level
   const auto bounds = [&](const Interval& of) {
     return ThresholdBounds{of, {std::min(of.low, found.low), std::max(of.high, found.high)}};
   };
@@ -365,11 +366,12 @@ double deviance_of(const Likelihood& likelihood, double value) {
   return std::max(0.0, 2.0 * (saturated - value));
 }
 
-/// Judges a fit by fits to answers that are drawn from it, until enough of these are as far off.
+/// Tests a fit against fits to answers drawn from it, until enough of these have as large a
+/// deviance.
 std::optional<Misfit> misfit_of(const Likelihood& likelihood, const Peak& peak,
                                 const PsychometricSettings& settings) {
   constexpr int kEnough = 10, kMost = 400;
-  constexpr double kTie = 1e-9;  // of deviances that are equal but for rounding
+  constexpr double kTie = 1e-9;  // between deviances that are equal up to rounding
   const int parameters = settings.lapse ? 2 : 3;
   Misfit out;
   out.df = static_cast<int>(likelihood.scores().size()) - parameters;
@@ -400,7 +402,7 @@ std::optional<Misfit> misfit_of(const Likelihood& likelihood, const Peak& peak,
 }  // namespace
 
 double Psychometric::at(double level) const {
-  constexpr double kFar = 700.0;  // of the exponential function
+  constexpr double kFar = 700.0;  // largest argument of the exponential function
   const double x = std::clamp(slope * (level - threshold), -kFar, kFar);
   return guess + (1.0 - guess - lapse) / (1.0 + std::exp(-x));
 }

@@ -11,7 +11,7 @@ namespace prostm {
 namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMost = 1e6;  // of levels, in any unit
+constexpr double kMost = 1e6;  // largest size of a level, in any unit
 
 void require_range(const LevelRange& range) {
   require_between("lowest level", range.low, -kMost, kMost);
@@ -60,7 +60,7 @@ BayesianStaircase::BayesianStaircase(const BayesianSettings& settings) : setting
   require_between("expected threshold", settings.expected, range.low, range.high);
   require_between("spread", settings.spread, 1e-9, 2.0 * kMost);
   require_between("trials", settings.trials, 1, 10'000);
-  // thresholds beyond the levels are possible, and must not be pressed into the range
+  // the threshold may lie beyond the levels, so the prior covers twice the range
   constexpr int kThresholds = 600;
   const double width = range.high - range.low;
   for (int i = 0; i <= kThresholds; ++i) {
@@ -102,7 +102,7 @@ void BayesianStaircase::answer(bool right, double at) {
     probability_[i] *= right ? share : 1.0 - share;
   }
   const double most = *std::max_element(probability_.begin(), probability_.end());
-  for (double& p : probability_) p /= most;  // products of many answers would vanish
+  for (double& p : probability_) p /= most;  // avoids underflow after many answers
   ++answers_;
 }
 

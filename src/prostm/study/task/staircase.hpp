@@ -1,8 +1,8 @@
 #pragma once
-/// Procedures that find a threshold while a participant answers: what level comes next.
+/// Adaptive procedures that find a threshold: they choose each level from the answers so far.
 ///
-/// A level is easier the higher it is. Each procedure is a state without a clock, so that it can be
-/// stored after each answer and go on from there by giving it the same answers again.
+/// Higher levels are easier. A procedure does not depend on time, so it can be restored by giving
+/// it the same answers again.
 
 #include <cstdint>
 #include <vector>
@@ -15,16 +15,16 @@ namespace prostm {
 
 struct UpDownSettings {
   double start = 0.8;
-  double step = 0.08;    ///< down, after the first reversals; twice as much before
-  double target = 0.75;  ///< share of right answers that it converges to, 0..1
+  double step = 0.08;    ///< downwards; doubled for the first `coarse` reversals
+  double target = 0.75;  ///< share of right answers to converge to, 0..1
   int coarse = 2;        ///< reversals with the double step
-  int reversals = 12;    ///< after which it ends
+  int reversals = 12;    ///< total reversals, after which it ends
   LevelRange range = {};
 };
 
 /// The weighted up-down method (Kaernbach, Percept. Psychophys. 49, 227 (1991)): a right answer
-/// lowers the level by a step, a wrong one raises it by target/(1 − target) of it, so that where
-/// the target's share is right, steps cancel.
+/// lowers the level by a step, a wrong one raises it by target/(1 − target) steps, so that the
+/// steps cancel where the share of right answers is `target`.
 class WeightedUpDown {
  public:
   /// @throws std::invalid_argument: a setting out of its bounds.
@@ -34,8 +34,8 @@ class WeightedUpDown {
   void answer(bool right);
   bool is_done() const { return reversals_ >= settings_.reversals; }
   int reversals() const { return reversals_; }
-  /// The mean of the levels since the coarse reversals. (That of the reversals alone is off where
-  /// steps up and down differ.) NaN before there are any.
+  /// Mean of the levels after the coarse reversals; NaN before the first. (The mean of the
+  /// reversals alone is biased if steps up and down differ.)
   double threshold() const;
 
  private:
@@ -43,20 +43,20 @@ class WeightedUpDown {
   double level_;
   int direction_ = 0;  // of the last step
   int reversals_ = 0;
-  double sum_ = 0.0;  // of the levels since the coarse reversals
+  double sum_ = 0.0;  // of the levels after the coarse reversals
   int count_ = 0;
 };
 
 struct BayesianSettings {
   Psychometric shape{.threshold = 0.0, .slope = 20.0, .guess = 0.5, .lapse = 0.02};
-  double expected = 0.5, spread = 0.25;  ///< the prior's mean and standard deviation of thresholds
+  double expected = 0.5, spread = 0.25;  ///< mean and standard deviation of the prior
   int trials = 40;
   LevelRange range = {};
 };
 
-/// A Bayesian staircase as QUEST (Watson & Pelli, Percept. Psychophys. 33, 113 (1983)): the
-/// probability of each threshold is updated after each answer, with a known shape; the next level
-/// is the mean.
+/// A Bayesian staircase like QUEST (Watson & Pelli, Percept. Psychophys. 33, 113 (1983)): each
+/// answer updates the probability of each threshold, for a psychometric function of known shape;
+/// the next level is the posterior mean.
 class BayesianStaircase {
  public:
   /// @throws std::invalid_argument: a setting out of its bounds.
@@ -64,11 +64,11 @@ class BayesianStaircase {
 
   double level() const;
   void answer(bool right) { answer(right, level()); }
-  /// @param at the level that was presented, where only some can be.
+  /// @param at the level that was presented, if it differs from level().
   void answer(bool right, double at);
   bool is_done() const { return answers_ >= settings_.trials; }
-  double threshold() const;  ///< the mean of what is probable
-  double deviation() const;  ///< its standard deviation
+  double threshold() const;  ///< posterior mean
+  double deviation() const;  ///< posterior standard deviation
 
  private:
   BayesianSettings settings_;
@@ -77,26 +77,27 @@ class BayesianStaircase {
 };
 
 struct AdjustmentSettings {
-  double coarse = 0.05, fine = 0.01;  ///< steps of the two kinds of keys
-  int repeats = 4;                    ///< half of them from below, half from above
-  double away = 0.3;                  ///< from the middle of the range, at least, that one begins
+  double coarse = 0.05, fine = 0.01;  ///< steps of the coarse and the fine keys
+  int repeats = 4;                    ///< half of them begin below the middle, half above
+  double away = 0.3;  ///< smallest distance of a first level from the middle of the range
   std::uint64_t seed = 1;
   LevelRange range = {};
 };
 
 /// The method of adjustment: the participant tunes a level until two stimuli feel alike, several
-/// times, from random levels below and above in turn, so that where one begins cancels.
+/// times, starting from random levels alternately below and above, so that the effect of the first
+/// level cancels.
 class Adjustment {
  public:
   /// @throws std::invalid_argument: a setting out of its bounds.
   explicit Adjustment(const AdjustmentSettings& settings);
 
   double level() const { return level_; }
-  /// @param steps up or, below 0, down.
+  /// @param steps upwards; negative: downwards.
   void tune(int steps, bool coarse);
-  /// Takes the level and begins the next repeat.
+  /// Accepts the current level and begins the next repeat.
   void accept() { accept(level_); }
-  /// The same with another level: that which was presented, or that of a file.
+  /// Accepts another level instead: the one that was presented, or one from a file.
   void accept(double level);
   bool is_done() const { return accepted_.size() >= static_cast<std::size_t>(settings_.repeats); }
   const std::vector<double>& accepted() const { return accepted_; }

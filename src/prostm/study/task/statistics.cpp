@@ -17,7 +17,7 @@ namespace {
 
 namespace bm = boost::math;
 
-constexpr double kTie = 1e-7;  // probabilities nearer than this, relatively, are equal
+constexpr double kTie = 1e-7;  // relative difference below which probabilities count as equal
 
 double two_sided_p(double t, double df) {
   return std::min(1.0, 2.0 * bm::cdf(bm::complement(bm::students_t(df), std::abs(t))));
@@ -81,14 +81,14 @@ double sum_of(std::span<const double> x) {
   return std::accumulate(x.begin(), x.end(), 0.0);
 }
 
-/// Whole numbers from low to high.
+/// Integers from low to high.
 struct Range {
   int low, high;
 };
 
-/// Returns the probability of all values of a distribution with one mode that are at most as likely
-/// as `observed`. Weights follow from the mode outwards by P(k + 1) = P(k) ratio(k): a product for
-/// each value, and an error of some roundings a step.
+/// Returns the probability of all values of a unimodal distribution that are at most as likely as
+/// `observed`. Weights follow from the mode outwards by P(k + 1) = P(k) ratio(k): one product for
+/// each value, with an error of a few roundings per step.
 /// @param most_likely the mode is the whole number below.
 template <typename Ratio>
 double as_unlikely_p(Range range, double most_likely, int observed, const Ratio& ratio) {
@@ -186,7 +186,8 @@ Permutation permutation(std::span<const double> a, std::span<const double> b, st
   all.insert(all.end(), b.begin(), b.end());
   double scale = 0.0;
   for (const double v : all) scale += std::abs(v);
-  // with fixed sizes, means differ as the sum over one group is off its own mean
+  // with fixed group sizes, the difference of means is proportional to the deviation of one group's
+  // sum from its mean
   const auto size = static_cast<double>(a.size());
   Tally tally(sum_of(a), sum_of(all) * size / static_cast<double>(all.size()), scale);
   if (splits_of(all.size(), a.size()) <= kMostSplits) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The acts of participants and experimenters.
+/// The actions of participants and experimenters.
 
 #include <array>
 #include <cstdint>
@@ -10,27 +10,27 @@
 
 namespace prostm {
 
-/// An act of somebody at the study.
+/// An action of the participant or the experimenter.
 struct StudyAct {
   enum class Do : std::uint8_t {
-    Next,     ///< goes on from Ready, Break and Paused; ends Training; closes what is over
-    Anyway,   ///< presents a trial although the gate does not pass or the page lacks something
-    Answer,   ///< to the question: `yes`, or `interval` where the task has several
-    Correct,  ///< the last answer was the other one, before the next is asked for
-    Pause,    ///< a trial under way is presented again
+    Next,     ///< continues from Ready, Break and Paused; ends Training; closes a finished session
+    Anyway,   ///< presents a trial although the gate does not pass or the page does not meet a need
+    Answer,   ///< answers the question: `yes`, or `interval` if the task has several
+    Correct,  ///< changes the last answer to the other one, until the next question
+    Pause,    ///< pauses; an interrupted trial is presented again
     Consent,  ///< the participant agrees
     About,    ///< `about`
     Explore,  ///< in Training: the scene `scene`
     Withdraw,
-    Tune,   ///< an adjustment's level, by `steps`
-    Accept  ///< it feels like the standard
+    Tune,   ///< changes an adjustment's level by `steps`
+    Accept  ///< accepts the level: it feels like the standard
   } what = Do::Next;
   bool yes = false;
   int scene = 0;
   nlohmann::ordered_json about = nlohmann::ordered_json::object();  ///< texts by name
   int interval = 0;                                                 ///< from 1
-  int steps = 0;                                                    ///< up or, below 0, down
-  bool coarse = false;                                              ///< large ones
+  int steps = 0;        ///< upwards; negative: downwards
+  bool coarse = false;  ///< large steps
 };
 template <>
 inline constexpr std::array<std::string_view, 11> kNames<StudyAct::Do> = {

@@ -1,5 +1,5 @@
 #pragma once
-/// The tasks that prostm has.
+/// The tasks of prostm.
 
 #include <span>
 
@@ -8,16 +8,16 @@ namespace prostm {
 class Task;
 using Tasks = std::span<const Task* const>;  ///< a table of tasks, none of which is null
 
-/// One interval: is it the scene that is asked for?
+/// One interval: is it the scene in question?
 const Task& identification();
-/// Two intervals, the level's and the standard's: which?
+/// Two intervals, one with the level and one with the standard: which is it?
 const Task& forced_choice();
 /// One interval at a level: yes or no.
 const Task& judgement();
 /// The level is tuned until it feels like the standard.
 const Task& adjustment();
 
-/// All of them; the first is the one of a protocol that names none.
+/// All tasks; the first is the default of protocols.
 Tasks study_tasks();
 
 }  // namespace prostm

@@ -8,7 +8,7 @@
 namespace prostm {
 namespace {
 
-/// So many digits are written down, and are presented.
+/// Rounds to the number of digits that are recorded and presented.
 double six_digits(double x) {
   if (x == 0.0) return x;
   const double scale = std::pow(10.0, 5.0 - std::floor(std::log10(std::abs(x))));
@@ -27,7 +27,7 @@ Track::Track(const Protocol& protocol, std::uint64_t seed)
   settle();
 }
 
-/// The level that is presented for one that a procedure asks for.
+/// The level that is presented when a procedure asks for `level`.
 double Track::presented(double level) {
   const LevelSettings& s = settings_;
   return set_level(base_, s.setting, std::clamp(six_digits(level), s.low, s.high));
@@ -38,7 +38,7 @@ void Track::settle() {
   level_ = presented(settings_.from_scale(x));
 }
 
-/// Counts an answer that asked for a level below (above) the one that was presented.
+/// Counts an answer that asked for a level below (`down`) or above (`up`) the one presented.
 void Track::count_at_bound(double level, bool down, bool up) {
   const bool low = down && level <= lowest_, high = up && level >= highest_;
   const bool goes_on = at_bound_.answers > 0 && at_bound_.low == low;

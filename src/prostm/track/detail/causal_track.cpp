@@ -38,8 +38,9 @@ bool CausalTrack::add(const HandFrame& frame) noexcept {
   return true;
 }
 
-/// Returns the hand's own track; else that of a hand of the same side which the frame lacks, since
-/// a tracker that lost a hand gives it a new id; else a free one; else that of the other hand.
+/// Returns the hand's own track; else that of a hand of the same side that is missing from the
+/// frame, since a tracker that lost a hand gives it a new id; else a free track; else the other
+/// hand's.
 CausalTrack::Track& CausalTrack::track_of(const HandFrame& frame, const Hand& hand) noexcept {
   for (Track& track : tracks_) {
     if (track.count > 0 && same(track.hand, hand)) return track;
@@ -80,7 +81,7 @@ void CausalTrack::set_velocities(Track& track) const noexcept {
   for (std::size_t i = 0; i < n; ++i) {
     const double t = track.times[slot(i)] - newest - mean;
     spread += t * t;
-    // Σ(t − t̄) = 0, so any origin of x will do; the newest position keeps digits
+    // Σ(t − t̄) = 0, so x may have any origin; the newest position keeps rounding errors small
     for (std::size_t j = 0; j < kJointCount; ++j) {
       track.hand.velocity[j] += t * (track.positions[slot(i)][j] - track.hand.position[j]);
     }

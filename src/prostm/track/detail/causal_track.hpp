@@ -1,5 +1,5 @@
 #pragma once
-/// Hands at the present moment from a live tracker's past frames alone.
+/// Hands at the present moment, computed from a live tracker's past frames only.
 
 #include <array>
 #include <cstddef>
@@ -19,7 +19,7 @@ class CausalTrack {
   /// @throws std::invalid_argument for a setting outside its bounds.
   explicit CausalTrack(const TrackSettings& settings);
 
-  /// Takes in a frame; its velocities are not used. Returns false and changes nothing unless
+  /// Adds a frame; its velocities are not used. Returns false and changes nothing unless
   /// `frame.time` is later than that of the last frame. Allocates nothing.
   /// @pre finite joints; two hands differ in id or side.
   bool add(const HandFrame& frame) noexcept;
@@ -35,7 +35,7 @@ class CausalTrack {
  private:
   static constexpr std::size_t kFrames = 64;  // past frames: 0.5 s at 120 Hz
 
-  /// One hand's frames, the newest at `newest`; older ones go backwards through the ring.
+  /// A ring buffer of one hand's frames: the newest is at `newest`, older ones precede it.
   struct Track {
     std::size_t count = 0, newest = 0;
     std::array<double, kFrames> times;  // [s]

@@ -9,8 +9,8 @@
 namespace prostm {
 namespace {
 
-// A tracker's frames lie within some degrees of its bones; these bounds are 45° on average and 90°
-// for a single bone. A hand seen from its edge has no clear side.
+// A tracker's joint frames follow the bones within a few degrees; these bounds are 45° on average
+// and 90° for a single bone. A hand seen edge-on has no clear side.
 constexpr double kLeastMean = 0.7, kLeastDot = 0.0, kClearSide = 0.3;
 
 /// First joints of the bones from knuckle to tip of the four fingers, whose frames all trackers
@@ -33,8 +33,8 @@ bool follows_bones(const Hand& hand) {
   return sum >= kLeastMean * static_cast<double>(kBones.size()) && least >= kLeastDot;
 }
 
-/// Above 0 for a right hand, below 0 for a left one, −1 to 1: seen from the back of the hand, the
-/// side of the little finger on which the index finger is.
+/// Returns the handedness, −1 to 1: above 0 for a right hand, below 0 for a left one. It follows
+/// from the side of the little finger on which the index finger lies, seen from the hand's back.
 double sidedness(const Hand& hand) {
   const Vec3 across = hand.position[kIndexProximal] - hand.position[kLittleProximal],
              along = hand.position[kMiddleProximal] - hand.position[kWrist];
@@ -51,8 +51,8 @@ bool fits(const Hand& hand) {
   return follows_bones(hand) && is_on_its_side(hand);
 }
 
-/// How the numbers of a hand may have been written: coordinates by M, orientations as rotations of
-/// the same axes (M R Mᵀ), or untouched.
+/// A convention in which a hand may have been recorded: coordinates transformed by M, orientations
+/// either transformed in the same way (M R Mᵀ) or left unchanged.
 struct Convention {
   const char* words;
   Eigen::Matrix3d M;
@@ -75,7 +75,7 @@ std::array<Convention, 5> conventions() {
            {"given with z up", rows(x, z, -y)}}};
 }
 
-/// The hand read in that convention: M maps the file's coordinates to T's.
+/// Returns the hand, read in a convention: M maps the file's coordinates to T's.
 Hand read_as(const Hand& hand, const Eigen::Matrix3d& M, bool turn) {
   Hand out = hand;
   for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -88,14 +88,14 @@ Hand read_as(const Hand& hand, const Eigen::Matrix3d& M, bool turn) {
   return out;
 }
 
-/// The hand with its quaternions read as w, x, y, z.
+/// Returns the hand with its quaternions read as w, x, y, z.
 Hand with_w_first(const Hand& hand) {
   Hand out = hand;
   for (Quat& q : out.orientation) q = Quat(q.x(), q.y(), q.z(), q.w());
   return out;
 }
 
-/// The convention among the mirrored and exchanged axes that the hand fits, or null.
+/// Returns the convention with mirrored or exchanged axes that the hand fits, or nothing.
 std::optional<std::string> axes_of(const Hand& hand) {
   for (const bool turn : {true, false}) {
     for (const Convention& convention : conventions()) {
@@ -121,7 +121,8 @@ HandProblem problem_of_axes(const Hand& hand) {
 
 HandProblem problem_of_side(const Hand& hand) {
   const bool right = hand.side == Side::Right;
-  // fingers that point to the user are as likely as a hand from behind the tracker
+  // fingers that point to the user suggest a mirrored z; a hand from behind the tracker is as
+  // likely
   const bool towards_user = hand.position[kMiddleProximal].z() - hand.position[kWrist].z() > 0.0;
   return {HandFault::Side,
           fmt::format("is called {}, but its joints are those of a {} hand; {}", name_of(hand.side),

@@ -8,7 +8,7 @@
 namespace prostm {
 
 /// Checks that −z of the joints' frames lies along the bones, and that the index finger is on the
-/// thumb's side of a hand of that side. If not, the words name the convention that the numbers fit:
+/// thumb's side for the hand's stated side. If not, the words name the convention that fits:
 /// another order of the quaternions, mirrored or exchanged axes, exchanged sides.
 /// @pre bones longer than 0, unit quaternions.
 std::optional<HandProblem> convention_problem(const Hand& hand);

@@ -37,7 +37,7 @@ class Renamer {
       frame.hands[h].id = known.kept;
     }
   }
-  /// Whether some hand was in two frames.
+  /// Whether any hand was in two frames.
   bool joined() const { return joined_; }
 
  private:
@@ -72,7 +72,7 @@ class Renamer {
 
   const TrackSettings& settings_;
   std::vector<KnownHand> known_;
-  std::int64_t next_ = 0;  // an id that no hand has
+  std::int64_t next_ = 0;  // an unused id
   bool joined_ = false;
 };
 

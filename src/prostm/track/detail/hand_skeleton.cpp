@@ -135,7 +135,7 @@ void pose_right(const Pose& X_TH, double closure, Hand& hand) {
   for (std::size_t j = 0; j < 4; ++j) hand.radius[kThumbMetacarpal + j] = kThumbRadius[j];
 }
 
-// the flat hand: where the tips touch, and the thumb's bones, which lie beside the palm
+// the flat hand: x of the tips, which touch, and the thumb's bones, which lie alongside the palm
 constexpr double kFlatTips[4] = {-14.0_mm, 0.0_mm, 12.9_mm, 24.0_mm};  // x in H [m]
 constexpr double kFlatThumb[3] = {degrees(21.5), degrees(2.0),
                                   degrees(-5.5)};  // splay of each bone
@@ -161,7 +161,7 @@ void pose_flat_right(Hand& hand) {
   }
 }
 
-/// With M the mirror at x = 0 of H: points M p, rotations M R M, which is a rotation again.
+/// Mirrors a hand at x = 0 of H, by M: points become M p, rotations M R M (again a rotation).
 void mirror(Hand& hand) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     hand.position[j].x() *= -1.0;

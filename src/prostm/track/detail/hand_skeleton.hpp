@@ -10,7 +10,7 @@ namespace prostm {
 /// @param X_TH pose of the palm: origin at the palm joint, x towards the right (of a right hand:
 /// towards the little finger), y dorsal, z towards the wrist.
 /// @param closure of the fingers: 0 open, 1 a loose fist. Beyond these it extrapolates.
-/// Sets side, position, orientation and radius of `hand` and leaves the rest.
+/// Sets side, position, orientation and radius of `hand`; other members keep their values.
 void pose_skeleton(const Pose& X_TH, double closure, Side side, Hand& hand) noexcept;
 
 /// Poses a flat hand: straight fingers that touch, the thumb beside the index finger, every joint

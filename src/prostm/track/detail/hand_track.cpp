@@ -14,7 +14,7 @@ void mean_joints(const HandTrack& track, double begin, double end, Joints& mean)
   const auto first = std::upper_bound(track.times.begin(), track.times.end(), begin) - 1;
   for (auto k = static_cast<std::size_t>(first - track.times.begin());
        k + 1 < track.times.size() && track.times[k] < end; ++k) {
-    // share of this interval, and how its two frames divide it
+    // share of this interval, and the weights of its two frames
     const double start = track.times[k], length = track.times[k + 1] - start;
     const double from = std::max(begin, start), to = std::min(end, start + length);
     const double share = (to - from) / (end - begin);
@@ -26,9 +26,9 @@ void mean_joints(const HandTrack& track, double begin, double end, Joints& mean)
   }
 }
 
-/// (H1): the difference of two means, one half a window later and one half a window earlier, over
-/// the distance of their middles. Exact for linear motion, also at the ends of the track, where the
-/// windows are cut.
+/// (H1): the difference of two means, one half a window later and one half a window earlier,
+/// divided by the time between their centres. Exact for linear motion, also at the ends of the
+/// track, where the windows are cut.
 void smoothed_velocity(const HandTrack& track, double t, const TrackSettings& settings,
                        Joints& velocity) {
   const double first = track.times.front(), last = track.times.back();

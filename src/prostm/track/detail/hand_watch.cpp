@@ -46,8 +46,8 @@ std::array<double, 2> HandWatch::still_since(const HandFrame& frame) noexcept {
         });
     if (found != postures_.end()) of_hand[h] = &*found;
   }
-  // a hand that moved replaces the newest posture left; a still hand that is not in every frame
-  // keeps its posture
+  // a hand that moved replaces the newer of the unmatched postures, so that a still hand that is
+  // missing from some frames keeps its posture
   for (std::size_t h = 0; h < frame.hands.size(); ++h) {
     if (of_hand[h] != nullptr) continue;
     const bool second =
@@ -83,7 +83,7 @@ void HandWatch::report(TrackerStatus& status) const {
                                    settings_.freeze_time);
   }
   if (status.unsure > 0) {
-    status.sentence += fmt::format("; {} hands were not taken: their confidence was below {}",
+    status.sentence += fmt::format("; {} hands were ignored: their confidence was below {}",
                                    status.unsure, settings_.least_confidence);
   }
 }

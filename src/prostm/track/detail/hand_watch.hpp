@@ -9,10 +9,10 @@
 
 namespace prostm {
 
-/// Removes hands below `least_confidence` from a live tracker's frames, and hands that have not
-/// moved any joint for `freeze_time`, since every real tracker has noise. Not for hands that may
-/// really stand still: recordings, the scripted hand, the page's. Has no clock: times are those of
-/// the frames.
+/// Removes hands with a confidence below `least_confidence` from a live tracker's frames, and hands
+/// of which no joint has moved for `freeze_time`: every real tracker has noise. Not for hands that
+/// may really stand still: recordings, the scripted hand, the page's. Has no clock: times are those
+/// of the frames.
 class HandWatch {
  public:
   /// @throws std::invalid_argument for a setting outside its bounds.
@@ -24,7 +24,7 @@ class HandWatch {
   void report(TrackerStatus& status) const;
 
  private:
-  /// Joint positions that a hand has kept since a time [s], whatever id the tracker gives it.
+  /// Joint positions that a hand has held since a time [s], whatever id the tracker gives it.
   struct Posture {
     double since;
     std::array<Vec3, kJointCount> position;

@@ -28,7 +28,7 @@ void list_track(Settings& s, Visitor& v) {
            "joint velocities are clamped to this; faster ones are glitches"},
           s.max_speed);
   v.field({"max_gap", "s", 0.001, 10, "a hand missing for longer is gone"}, s.max_gap);
-  v.field({"least_confidence", "", 0, 1, "hands that the tracker trusts less are not taken"},
+  v.field({"least_confidence", "", 0, 1, "hands of lower confidence are ignored"},
           s.least_confidence);
   v.field({"freeze_time", "s", 0.05, 60,
            "a live hand that has not moved any joint for this long is "
@@ -41,12 +41,12 @@ void list_track(Settings& s, Visitor& v) {
   v.field({"prediction_limit", "m", 0, 0.1, "no joint is predicted farther than this"},
           s.prediction_limit);
   v.field({"filter_position", "", 0, 1,
-           "share of a still joint's change that is taken, above 0; "
+           "filter coefficient of a still joint's position, above 0; "
            "1: no filter"},
           s.filter_position);
-  v.field({"filter_velocity", "", 0, 1, "filter_position for the change of a joint's velocity"},
+  v.field({"filter_velocity", "", 0, 1, "filter coefficient of a joint's velocity"},
           s.filter_velocity);
-  v.field({"filter_position_scale", "m", 1e-5, 1, "change at which the filter is half open"},
+  v.field({"filter_position_scale", "m", 1e-5, 1, "innovation at which the filter is half open"},
           s.filter_position_scale);
   v.field(
       {"filter_velocity_scale", "m/s", 1e-4, 100, "filter_position_scale for a joint's velocity"},

@@ -12,11 +12,11 @@ void validate(const StudyHandSettings& settings);
 /// @throws std::invalid_argument for no frames, times that do not increase from 0, or two hands of
 /// the same id and side in a frame.
 void validate_recording(const HandRecording& recording);
-/// Removes hands below `least_confidence`. @throws std::invalid_argument with a sentence when there
-/// were hands and all are removed.
+/// Removes hands with a confidence below `least_confidence`. @throws std::invalid_argument with a
+/// sentence if there were hands and all are removed.
 void leave_out_unsure(const TrackSettings& settings, HandRecording& recording);
-/// The settings with a max_gap of at least two usual intervals of the recording, for recordings of
-/// at least 11 Hz: some are thinned out. @throws std::invalid_argument as validate().
+/// Returns the settings with a max_gap of at least two usual frame intervals of the recording, for
+/// recordings of at least 11 Hz: some are thinned out. @throws std::invalid_argument as validate().
 TrackSettings with_gap_for(const HandRecording& recording, const TrackSettings& settings);
 void validate_step(double step);  ///< time between samples [s]
 

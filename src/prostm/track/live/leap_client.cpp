@@ -34,7 +34,7 @@ constexpr milliseconds kFirstRetry{50}, kLastRetry{1000}, kConnectTime{1000}, kS
 constexpr std::size_t kMaxMessage = std::size_t{256} << 10;  // a frame of two hands has 12 kB
 constexpr std::size_t kFramesKept = 128;
 
-// The bridge compares these letter by letter and has room for 32 letters.
+// The bridge compares these character by character, in a buffer of 32 characters.
 constexpr std::array<std::string_view, 3> kRequests = {
     R"({"background":true})", R"({"focused":true})", R"({"optimizeHMD":false})"};
 
@@ -77,7 +77,7 @@ class LeapTracker final : public LiveTracker {
     return link_.load(std::memory_order_relaxed) == Link::Connected;
   }
 
-  /// Whether an attempt to connect has failed, or frames come in.
+  /// Whether an attempt to connect has failed, or frames are arriving.
   bool is_settled() const noexcept {
     const Link link = link_.load(std::memory_order_relaxed);
     if (link == Link::Connected) return frames_.load(std::memory_order_relaxed) > 0;
@@ -97,7 +97,7 @@ class LeapTracker final : public LiveTracker {
       add_faults(faults_, status);
     }
     if (status.repeated > 0) {
-      status.sentence += fmt::format("; {} frames were not taken: their time had been seen already",
+      status.sentence += fmt::format("; {} frames were ignored: their time stamp was seen before",
                                      status.repeated);
     }
     return status;
@@ -207,7 +207,7 @@ class LeapTracker final : public LiveTracker {
   asio::io_context io_{1};
   const std::vector<tcp::endpoint> endpoints_;
 
-  // for the tracker's thread alone
+  // used by the tracker's thread only
   std::optional<websocket::stream<beast::tcp_stream, false>> socket_;  // no compression
   asio::steady_timer retry_;
   beast::flat_buffer buffer_;

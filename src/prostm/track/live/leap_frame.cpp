@@ -136,7 +136,7 @@ std::optional<std::int64_t> whole(const JsonNode& node, const char* key) {
   return static_cast<std::int64_t>(x);
 }
 
-/// Whether a pointable is a finger of that hand. Faulty ones are nobody's.
+/// Whether a pointable is a finger of that hand. Faulty ones belong to no hand.
 bool is_finger_of(const JsonNode& node, std::int64_t hand) {
   const bool tool = node.has("tool") && node.at("tool", "").value() == true;
   return !tool && whole(node, "handId") == hand;
@@ -152,8 +152,9 @@ int type_of(const JsonNode& node, std::int64_t hand) {
   return static_cast<int>(type);
 }
 
-/// Finds the five fingers of a hand among the frame's pointables. Of two with one type the one
-/// whose id fits is taken, so that a finger with another hand's id does not cost that hand.
+/// Finds the five fingers of a hand among the frame's pointables. Of two with the same type the one
+/// whose id fits is used, so that a finger that states the wrong hand does not get the hand
+/// dropped.
 std::array<Finger, kFingers> read_fingers(const JsonNode& hand, std::int64_t id,
                                           const JsonNode& pointables) {
   std::array<std::optional<JsonNode>, kFingers> found;
@@ -185,7 +186,7 @@ Vec3 middle_of_knuckles(const std::array<Finger, kFingers>& fingers) {
   return 0.25 * (fingers[1].mcp + fingers[2].mcp + fingers[3].mcp + fingers[4].mcp);
 }
 
-/// Refuses a hand with the id of another one, nearer to the fingers of that id.
+/// Refuses a hand if another hand has the same id and is nearer to the fingers of that id.
 void check_owner(const JsonNode& hands, const JsonNode& hand, std::int64_t id,
                  const std::array<Finger, kFingers>& fingers) {
   const Vec3 knuckles = middle_of_knuckles(fingers);
@@ -233,8 +234,8 @@ Eigen::Matrix3d transported(const Eigen::Matrix3d& R, const Vec3& bone) {
 }
 
 /// The frame of a proximal bone (H15). A finger bent by 90° at its knuckle lies along the
-/// metacarpal's y, about which it could swing to any side; near there the x of the metacarpal takes
-/// over, as if it did not swing.
+/// metacarpal's y, about which it could swing to any side; near that pose the metacarpal's x is
+/// used instead, as if it did not swing.
 Eigen::Matrix3d beyond_knuckle(const JsonNode& node, const Eigen::Matrix3d& R_TM,
                                const Vec3& bone) {
   constexpr double kNoSwing = 0.25;  // cos of 75.5°
@@ -261,14 +262,14 @@ Eigen::Matrix3d template_frame(const JsonNode& node, const Palm& palm, std::size
   return palm.R_TP * frame_from(node, y, z);
 }
 
-/// Sets positions and orientations of a finger's joints. Orientations are recorded, or carried from
-/// bone to bone.
+/// Sets positions and orientations of a finger's joints. Orientations are taken from the recording,
+/// or transported from bone to bone.
 void set_finger(const JsonNode& node, const Palm& palm, const std::array<Finger, kFingers>& fingers,
                 std::size_t f, Hand& hand) {
   const Finger& finger = fingers[f];
   auto joint = static_cast<std::size_t>(kFirstJoint[f]);
   const std::size_t first = joint;
-  // the thumb's metacarpal has no length in the Leap's skeleton, so that its joints move up by one
+  // the thumb's metacarpal has no length in the Leap's skeleton, so its joints shift by one
   if (f > 0) {
     if (!finger.carp) hand.inferred |= 1U;
     hand.position[joint++] = finger.carp ? *finger.carp : palm.point(kCarps[f - 1]);
@@ -289,7 +290,7 @@ void set_finger(const JsonNode& node, const Palm& palm, const std::array<Finger,
   }
   hand.orientation[first + bones] = Quat(R_TB);
 
-  // leapd gives widths in millimetres; other services give numbers that no finger has
+  // leapd gives widths in millimetres; other services give implausible numbers
   const bool has_width = finger.width >= kMinWidth && finger.width <= kMaxWidth;
   const double radius = has_width ? 0.5 * finger.width : kFingerRadius[f] * palm.span;
   for (std::size_t b = 0; b <= bones; ++b)
@@ -338,7 +339,7 @@ JsonNode pointables_of(const JsonNode& frame) {
 
 double time_of(const JsonNode& frame) {
   constexpr double kMost =
-      1e19;  // nanoseconds since 1970, which are refused with a better sentence
+      1e19;  // allows nanoseconds since 1970, which are refused later, with a clearer message
   try {
     return 1e-6 * frame.at("timestamp", "the time in microseconds").number(0.0, kMost);
   } catch (const InputError& error) {

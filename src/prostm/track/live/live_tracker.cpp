@@ -12,7 +12,7 @@ namespace prostm {
 namespace {
 
 constexpr double kDrift = 1e-3;        // largest drift between two clocks
-constexpr double kLongestDelay = 0.1;  // a longer delay means that a clock was set anew [s]
+constexpr double kLongestDelay = 0.1;  // a longer delay means that a clock was reset [s]
 
 class LiveHand final : public HandSource {
  public:

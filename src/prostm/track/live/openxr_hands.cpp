@@ -179,7 +179,7 @@ class Session {
     }
   }
 
-  /// STAGE stands still in the room; LOCAL is where the head was at first.
+  /// STAGE is fixed in the room; LOCAL has its origin at the head's initial place.
   void create_space() {
     std::array<XrReferenceSpaceType, 16> types{};
     std::uint32_t count = 0;
@@ -268,7 +268,7 @@ class Session {
     });
   }
 
-  /// Share of the joints that the runtime sees now; others are inferred, or as last seen.
+  /// Share of the joints that the runtime tracks now; others are inferred, or last known places.
   static double tracked_share(const std::array<XrHandJointLocationEXT, kJointCount>& joints) {
     constexpr XrSpaceLocationFlags kTracked =
         XR_SPACE_LOCATION_POSITION_TRACKED_BIT | XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
@@ -279,7 +279,7 @@ class Session {
     return static_cast<double>(tracked) / static_cast<double>(joints.size());
   }
 
-  /// Reads the joints of a hand whose side is known; returns what is wrong with them.
+  /// Reads the joints of a hand whose side is known; returns the first problem, if any.
   static std::optional<HandProblem> take(
       const std::array<XrHandJointLocationEXT, kJointCount>& joints, Hand& hand) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -363,7 +363,7 @@ class OpenXrTracker final : public LiveTracker {
     session_.reset();
   }
 
-  /// Handles events and takes in a frame; false when the session is over.
+  /// Handles events and reads a frame; false when the session is over.
   bool turn() {
     if (!session_->poll()) return false;
     connected_.store(session_->running(), std::memory_order_relaxed);
@@ -394,12 +394,12 @@ class OpenXrTracker final : public LiveTracker {
     problem_ = problem;
   }
 
-  std::unique_ptr<Session> session_;  // of the tracker's thread
+  std::unique_ptr<Session> session_;  // used by the tracker's thread only
   HandFrame frame_;
   SpscRing<HandFrame> ring_{kFramesKept};
   std::atomic<bool> stop_{false}, connected_{false};
   std::atomic<std::int64_t> frames_{0}, sessions_{0};
-  mutable std::mutex problem_mutex_;  // neither who plans nor who emits ever waits for it
+  mutable std::mutex problem_mutex_;  // planner and emitter never wait for it
   std::string problem_;
   HandFaults faults_;
 

@@ -83,7 +83,7 @@ void PageHand::receive(const Message& message, double time) noexcept {
   const PageHandState before = state_.load(std::memory_order_relaxed);
   if (before == PageHandState::Late && time - steady_since_ < kSteady) return;
   const PagePose& pose = message.pose;
-  // another side is another hand
+  // a hand of the other side is a new hand
   const bool same = before == PageHandState::Held && pose.side == side_;
   side_ = pose.side;
   target_ = {pose.p_D.x(), pose.p_D.y(), pose.p_D.z(), pose.yaw,
@@ -171,7 +171,7 @@ HandSwitch::HandSwitch(std::unique_ptr<HandSource> base, std::shared_ptr<PageHan
     : base_(std::move(base)), page_(std::move(page)), X_TD_(X_DT.inverse()) {}
 
 void HandSwitch::sample(double time, HandFrame& out) {
-  // also while the page holds its hand, since time goes on for the other hands
+  // also while the page controls the hand, since the base needs every time
   base_->sample(time, out);
   Hand hand;
   double age = 0.0;

@@ -26,16 +26,16 @@ struct PagePose {
 
 /// State of the page's hand.
 enum class PageHandState : std::uint8_t {
-  Free,   ///< nobody holds it
-  Held,   ///< in charge
-  Late,   ///< lapsed: the poses come too late
+  Free,   ///< no page controls it
+  Held,   ///< a page controls it
+  Late,   ///< lapsed: its poses arrive too late
   Hidden  ///< released because its page is hidden
 };
 template <>
 inline constexpr std::array<std::string_view, 4> kNames<PageHandState> = {"free", "held", "late",
                                                                           "hidden"};
 
-/// State of the page's hand, and how often it was released without being asked to.
+/// State of the page's hand, and how often it was released without a request.
 struct PageHandReport {
   PageHandState state = PageHandState::Free;
   std::int64_t late = 0;    ///< lapses
@@ -46,9 +46,9 @@ struct PageHandReport {
 /// docs/design/hands.md, so that 60 unevenly timed messages a second make a smooth motion with a
 /// true velocity.
 ///
-/// A hand that is not placed for 0.5 s of run time lapses. Browsers run the timers of a page that
-/// nobody sees once a second or less, so a lapsed hand comes back only after it has been placed at
-/// least every 0.4 s for a whole second, or anew after release(): late timers release it once and
+/// A hand that is not placed for 0.5 s of run time lapses. Browsers throttle the timers of a hidden
+/// page to once a second or less, so a lapsed hand returns only after it has been placed at least
+/// every 0.4 s for a whole second, or again after release(): throttled timers release it once and
 /// do not switch the output on and off.
 class PageHand {
  public:
@@ -59,12 +59,12 @@ class PageHand {
   /// finite or the palm is outside its bounds; angles and closure are clamped (yaw and roll ±180°,
   /// pitch ±90°). One thread, the same for place() and release(); lock-free.
   bool place(const PagePose& pose) noexcept;
-  /// Releases the hand. @param hidden because nobody sees its page any more; reported.
+  /// Releases the hand. @param hidden whether because its page is hidden, which is counted.
   void release(bool hidden = false) noexcept;
 
-  /// Sets `out` to the hand at run time `time` [s], in D; false if no page holds it. Sets `age` to
-  /// `time` less the time when the newest pose was first seen here [s]. The hand gets a new id each
-  /// time a page takes it. Times must not decrease. One other thread; allocates nothing.
+  /// Sets `out` to the hand at run time `time` [s], in D; false if no page controls it. Sets `age`
+  /// to `time` minus the time when the newest pose was first seen here [s]. The hand gets a new id
+  /// each time a page takes control. Times must not decrease. One other thread; allocates nothing.
   bool sample(double time, Hand& out, double& age) noexcept;
 
   /// As of the last sample(). Any thread; lock-free.
@@ -90,13 +90,13 @@ class PageHand {
   std::array<double, kFreedom> target_{};
   Side side_ = Side::Right;
   std::atomic<PageHandState> state_{PageHandState::Free};  // written by the sampling thread
-  std::atomic<std::int64_t> late_{0}, hidden_{0};          // as is this
+  std::atomic<std::int64_t> late_{0}, hidden_{0};          // likewise
   double last_time_ = 0.0, arrival_ = 0.0;                 // [s]
-  double steady_since_ = 0.0;  // poses have come without a gap since then [s]
+  double steady_since_ = 0.0;  // poses have arrived without a gap since then [s]
   std::int64_t id_;
 };
 
-/// The page's hand while a page holds it, else the hands of `base`. A single thread samples both.
+/// The page's hand while a page controls it, else the hands of `base`. One thread samples both.
 class HandSwitch final : public HandSource {
  public:
   /// @param X_DT pose of the tracker of `base`: like every source, the switch gives hands in T.
@@ -118,7 +118,7 @@ class HandSwitch final : public HandSource {
   Pose X_TD_;
 };
 
-/// A source that never has a hand; the fallback behind the page's hand (`--hand page`).
+/// A source that never has a hand: the base of the page's hand for `--hand page`.
 std::unique_ptr<HandSource> make_absent_hand();
 
 }  // namespace prostm

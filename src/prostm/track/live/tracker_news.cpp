@@ -5,9 +5,9 @@
 namespace prostm {
 namespace {
 
-constexpr double kFirstTry = 1.5;  // by then a first attempt to connect has ended [s]
-constexpr double kSilence = 2.0;   // of a tracker that is connected [s]
-constexpr double kQuiet = 5.0;     // between two sentences about a tracker that was there [s]
+constexpr double kFirstTry = 1.5;  // time for a first attempt to connect [s]
+constexpr double kSilence = 2.0;   // without a frame, a connected tracker counts as silent [s]
+constexpr double kQuiet = 5.0;     // least time between messages after the first connection [s]
 
 }  // namespace
 
@@ -38,7 +38,7 @@ std::optional<std::string> TrackerNews::look(const TrackerStatus& status, double
   switch (state) {
     case State::Missing:
       return fmt::format(
-          "No tracker yet: {}. The run goes on without a hand, and tries again until one is there.",
+          "No tracker yet: {}. The run continues without a hand and keeps trying to connect.",
           status.sentence);
     case State::Silent:
       return fmt::format("The tracker sends no frame: {}. Is it plugged in?", status.sentence);

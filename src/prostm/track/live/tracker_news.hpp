@@ -1,5 +1,5 @@
 #pragma once
-/// The news of a live tracker for those who wait for its hands, each change once.
+/// Messages for the user about the state of a live tracker, one for each change.
 
 #include <cstdint>
 #include <optional>
@@ -9,12 +9,12 @@
 
 namespace prostm {
 
-/// Tells that the tracker is missing, is there, sends nothing, is lost, is back. One that comes and
-/// goes is told at most every few seconds, with the state that it has then.
+/// Reports that the tracker is missing, connected, silent, lost, or reconnected. If it comes and
+/// goes, its current state is reported at most every few seconds.
 class TrackerNews {
  public:
-  /// @param time since the start, never before that of the call before [s].
-  /// @return a sentence, or nothing where there is nothing new.
+  /// @param time since the start [s]; must not decrease.
+  /// @return a sentence, or nothing if nothing changed.
   std::optional<std::string> look(const TrackerStatus& status, double time);
 
  private:

@@ -6,10 +6,10 @@ namespace prostm::viewer {
 namespace {
 
 constexpr std::size_t kMostWaiting = 64;
-constexpr std::chrono::milliseconds kRuns{50};     // between an answer and the next question
-constexpr std::chrono::seconds kLongestAnswer{1};  // a run that has not begun answers nothing
+constexpr std::chrono::milliseconds kRuns{50};     // time between an answer and the next commands
+constexpr std::chrono::seconds kLongestAnswer{1};  // a run that has not begun does not answer
 
-/// Whether a command makes an older one needless.
+/// Whether a command makes an older one obsolete.
 bool replaces(const LiveCommand& newer, const LiveCommand& older) {
   using Kind = LiveCommand::Kind;
   const auto plays = [](Kind kind) { return kind == Kind::Play || kind == Kind::Pause; };

@@ -8,25 +8,25 @@
 
 namespace prostm::viewer {
 
-/// A run stands while it takes new settings. So it is asked once it has answered what was asked
-/// before and has then run for a while; of what comes in between, a newer value replaces an older
-/// one of the same control.
+/// A run pauses while it applies new settings. So commands are passed on only after the run has
+/// answered the previous ones and has then run for a while; meanwhile, a newer value replaces an
+/// older one of the same control.
 class CommandQueue {
  public:
   using Clock = std::chrono::steady_clock;
   explicit CommandQueue(LiveControl& control) : control_(control) {}
 
-  /// False when too many commands wait.
+  /// Adds a command; false if the queue is full.
   bool add(const LiveCommand& command, Clock::time_point now);
-  /// The run has answered.
+  /// Records that the run has answered.
   void answered(Clock::time_point now);
-  /// Asks the run for everything that waits, if it is time to.
+  /// Passes all pending commands to the run, if it is time.
   void hand_over(Clock::time_point now);
 
  private:
   LiveControl& control_;
   std::vector<LiveCommand> waiting_;
-  bool asked_ = false;  // and not answered yet
+  bool asked_ = false;  // commands were passed on, and not answered yet
   Clock::time_point next_{};
 };
 

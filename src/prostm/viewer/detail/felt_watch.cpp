@@ -9,7 +9,7 @@
 namespace prostm::viewer {
 namespace {
 
-// a plan takes about 0.25 s: 5 % of a core
+// one plan takes about 0.25 s, so this uses 5 % of a core
 constexpr std::chrono::seconds kPause{5};
 
 double skill_of(const PlanSnapshot& plan, int patch, WorkerPool& pool,
@@ -20,7 +20,7 @@ double skill_of(const PlanSnapshot& plan, int patch, WorkerPool& pool,
     return felt_skill(plan.plan, plan.target, patch, emit, plan.emission_rate,
                       plan.settings->transducers, pool, [&] { return !stop.stop_requested(); });
   } catch (const std::invalid_argument&) {
-    return std::numeric_limits<double>::quiet_NaN();  // an array that reaches no focal point of it
+    return std::numeric_limits<double>::quiet_NaN();  // the array reaches none of its focal points
   }
 }
 
@@ -42,7 +42,7 @@ void FeltWatch::offer(const PlanSnapshot& plan, int patch) {
 }
 
 void FeltWatch::work(const std::stop_token& stop) {
-  // of this thread alone on Linux; the run comes first
+  // affects only this thread on Linux; the run has priority
   static_cast<void>(::nice(19));
   WorkerPool pool(1);
   while (true) {

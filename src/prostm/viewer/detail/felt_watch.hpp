@@ -1,6 +1,6 @@
 #pragma once
-/// How well what is felt renders its target, while somebody looks: on a thread of its own, of the
-/// lowest priority, now and then.
+/// Regularly evaluates how well the felt stimulus renders its target, while there are viewers. Uses
+/// a thread of the lowest priority.
 
 #include <atomic>
 #include <chrono>
@@ -17,10 +17,10 @@ class FeltWatch {
  public:
   FeltWatch();
 
-  /// Takes a copy of the plan when the last one was taken long enough ago, and otherwise nothing.
-  /// @param patch that is judged. @pre the plan is planned.
+  /// Copies the plan for evaluation if the last copy is old enough; otherwise does nothing. @param
+  /// patch the patch to evaluate. @pre plan.planned.
   void offer(const PlanSnapshot& plan, int patch);
-  /// felt_skill() of the last plan that was judged; NaN before the first.
+  /// felt_skill() of the last evaluated plan; NaN before the first.
   double skill() const { return skill_.load(std::memory_order_relaxed); }
 
  private:
@@ -28,7 +28,7 @@ class FeltWatch {
 
   std::mutex mutex_;
   std::condition_variable_any wake_;
-  PlanSnapshot plan_;  // under the mutex, until the thread takes it
+  PlanSnapshot plan_;  // guarded by the mutex, until the thread takes it
   int patch_ = 0;
   bool waiting_ = false;
   std::chrono::steady_clock::time_point next_{};

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMs = 1e3, kMn = 1e3;
-constexpr double kHeightScale = 1e-5;  // of the skin's heights on the wire [m]
+constexpr double kHeightScale = 1e-5;  // unit of the skin's heights on the wire [m]
 
 std::array<float, 3> floats(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
@@ -46,7 +46,7 @@ std::uint16_t share(double value, double scale) {
   return static_cast<std::uint16_t>(std::lround(std::clamp(value / scale, 0.0, 1.0) * kMost));
 }
 
-/// @param scale pressure that is sent as the largest number [Pa].
+/// @param scale pressure sent as the largest number [Pa].
 void fill_field(const TargetField& target, const std::vector<double>& rendered, double scale,
                 ViewField& out) {
   constexpr double kHighest = 32767.0;
@@ -136,7 +136,7 @@ void set(ViewFrame& frame, std::size_t number, double value) {
 
 }  // namespace
 
-// ---- values of the last while ----
+// ---- recent values ----
 
 void Recent::add(Clock::time_point now, double value) {
   entries_.push_back({now, value});
@@ -163,7 +163,7 @@ double Recent::quantile(double p) {
 // ---- frames ----
 
 void FrameMaker::refresh(ViewFrame& frame, ViewNews& news) {
-  // first, so that whoever reads that the run is paused finds what it was paused at
+  // first: once the run is seen as paused, the other snapshots are those of the pause
   snapshots_.refresh_run();
   new_step_ |= snapshots_.refresh_step();
   new_smoke_ |= snapshots_.refresh_volume();
@@ -235,7 +235,7 @@ std::uint32_t FrameMaker::flags(const ViewFrame& frame) const {
          (mute_.on(MuteReason::Hot) ? kViewHot : 0U);
 }
 
-/// Where no hand is in sight there is no latency: the last one is of a hand that has gone.
+/// Without a hand there is no latency: the last value belongs to a hand that has left.
 void FrameMaker::fill_latencies(ViewFrame& frame) {
   const auto now = Recent::Clock::now();
   double latency = 0.0;

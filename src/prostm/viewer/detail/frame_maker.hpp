@@ -1,5 +1,5 @@
 #pragma once
-/// From the snapshots of a run to the frames of the wire. Private to viewer.
+/// Makes frames of the wire from the snapshots of a run. Private to viewer.
 
 #include <chrono>
 #include <deque>
@@ -10,15 +10,15 @@
 
 namespace prostm::viewer {
 
-/// Values of the last while, and what they say of it.
+/// Values of a recent time span, and their quantiles.
 class Recent {
  public:
   using Clock = std::chrono::steady_clock;
   explicit Recent(double seconds) : span_(seconds) {}
   void add(Clock::time_point now, double value);
-  /// Forgets what is older than the span.
+  /// Discards values older than the span.
   void trim(Clock::time_point now);
-  /// The share p of the values are not above this; NaN without any.
+  /// Smallest value that a share p of the values do not exceed; NaN without values.
   double quantile(double p);
 
  private:
@@ -31,12 +31,12 @@ class Recent {
   std::vector<double> sorted_;
 };
 
-/// Keeps what it needs from frame to frame.
+/// Makes frames, and keeps the state needed between them.
 class FrameMaker {
  public:
   FrameMaker(Snapshots& snapshots, const Mute& mute) : snapshots_(snapshots), mute_(mute) {}
-  /// Takes what is new and fills in the frame, but for its sequence number. A run that is paused is
-  /// shown at one instant: hands, smoke and plan wait for each other.
+  /// Fills in the frame, except for its sequence number, from new snapshots. A paused run is shown
+  /// at one instant: hands, smoke and plan are updated together.
   void refresh(ViewFrame& frame, ViewNews& news);
 
  private:
@@ -49,7 +49,8 @@ class FrameMaker {
 
   Snapshots& snapshots_;
   const Mute& mute_;
-  bool new_step_ = true, new_smoke_ = false, new_plan_ = false;  // and not in a frame yet
+  bool new_step_ = true, new_smoke_ = false,
+       new_plan_ = false;  // new data that are not in a frame yet
   RenderedPlan rendered_;
   Recent latencies_{10.0};
   FeltWatch felt_;

@@ -16,7 +16,7 @@ HttpAnswer refuse(unsigned status, std::string_view sentence) {
   return a;
 }
 
-/// Whether the Origin is the page that this host served.
+/// Whether the Origin is a page served by this host.
 bool same_origin(std::string_view origin, std::string_view host) {
   return origin.empty() || lower_case(origin) == "http://" + lower_case(host);
 }
@@ -33,11 +33,11 @@ HttpAnswer file_answer(std::string_view path, std::span<const PageFile> files) {
   if (path == "/" && files.empty())
     return refuse(200,
                   "This build of prostm has no page (PROSTM_PAGE=OFF); /live and "
-                  "/numbers.json are there.\n");
+                  "/numbers.json are available.\n");
   return refuse(404, "There is no such file here; the page is at /.\n");
 }
 
-/// Whether this, behind a host's name, is nothing or a port. Which one does not matter: it may come
+/// Whether the text after a host is empty or a port. Any port is allowed: the connection may come
 /// through a tunnel.
 bool is_port(std::string_view text) {
   if (text.empty()) return true;
@@ -67,11 +67,11 @@ HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, H
   if (request.ambiguous)
     return refuse(400, "The request has more than one Host or more than one Origin.\n");
   if (!host_allowed(request.host, scope.any_address))
-    return refuse(403, "This server answers to its own address and to localhost alone.\n");
+    return refuse(403, "This server answers only to its own address and to localhost.\n");
   if (!same_origin(request.origin, request.host))
-    return refuse(403, "Pages of other sites have no business here.\n");
+    return refuse(403, "Requests from pages of other sites are refused.\n");
   if (request.method != "GET" && request.method != "HEAD")
-    return refuse(405, "Only GET and HEAD are understood.\n");
+    return refuse(405, "Only GET and HEAD are supported.\n");
   if (request.target.empty() || request.target.front() != '/')
     return refuse(400, "The target of a request must begin with /.\n");
 
@@ -87,7 +87,7 @@ HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, H
     HttpAnswer a;
     a.type = "application/json";
     a.text = numbers();
-    return a.text.empty() ? refuse(403, "There are no numbers to be seen now.\n") : a;
+    return a.text.empty() ? refuse(403, "The numbers may not be seen now.\n") : a;
   }
   return file_answer(path, files);
 }

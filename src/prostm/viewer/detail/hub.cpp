@@ -6,10 +6,11 @@
 namespace prostm::viewer {
 namespace {
 
-// Pages set the rate of frames, and a hidden one wants one a second; numbers do not wait for them.
+// Pages set the rate of frames, and a hidden page requests only one per second; numbers do not wait
+// for them.
 constexpr auto kNumbersAge = std::chrono::milliseconds(100);
 
-/// null for what JSON cannot say.
+/// The value as JSON; null if it is not finite.
 nlohmann::ordered_json number(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// The state that the connections of one server share. Used by the server's thread alone, the
-/// counters excepted.
+/// The state shared by the connections of one server. Used only by the server's thread, except for
+/// the counters.
 
 #include <array>
 #include <atomic>
@@ -19,8 +19,8 @@ using Clock = std::chrono::steady_clock;
 using Bytes = std::vector<std::uint8_t>;
 class Session;
 
-/// One frame as messages: each of the four ways in which the large sections may be left out is
-/// encoded once at most, for all pages.
+/// One frame as messages: each of the four variants, with or without the large sections, is encoded
+/// at most once for all pages.
 class EncodedFrame {
  public:
   void begin() { made_ = {}; }
@@ -29,7 +29,7 @@ class EncodedFrame {
  private:
   std::shared_ptr<Bytes> unused_buffer();
   std::array<std::shared_ptr<Bytes>, 4> made_;
-  std::vector<std::shared_ptr<Bytes>> pool_;  // those that nobody sends any more are used again
+  std::vector<std::shared_ptr<Bytes>> pool_;  // buffers that are no longer being sent are reused
 };
 
 struct Hub {
@@ -38,22 +38,22 @@ struct Hub {
     states.fill(std::make_shared<std::string>());
   }
 
-  /// Numbers as JSON, at most 0.1 s old, however seldom pages want frames. Empty where the main
-  /// room gets no frames.
+  /// Numbers as JSON, at most 0.1 s old, even if pages request frames more slowly. Empty if the
+  /// main room gets no frames.
   std::string numbers();
-  /// Asks the source for the next frame.
+  /// Gets the next frame from the source.
   void next_frame();
 
   const ViewSettings settings;
   ViewSource& source;
   const std::span<const PageFile> files;
-  bool any_address = false;  // listens on more than loopback
+  bool any_address = false;  // the server listens on more than loopback
 
   ViewFrame frame;
-  Clock::time_point frame_at;  // when it was asked for
+  Clock::time_point frame_at;  // time of its request
   ViewNews news;
-  std::array<std::shared_ptr<const std::string>, std::size(kRooms)> states;  ///< by Room
-  std::vector<Session*> pages;  // those whose WebSocket is open
+  std::array<std::shared_ptr<const std::string>, std::size(kRooms)> states;  ///< indexed by Room
+  std::vector<Session*> pages;  // sessions with an open WebSocket
   int connections = 0;
   std::uint32_t last_page = 0;
 

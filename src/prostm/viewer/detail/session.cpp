@@ -10,10 +10,10 @@ namespace asio = boost::asio;
 namespace websocket = beast::websocket;
 
 constexpr std::uint32_t kMaxHeader = 8192;  // [bytes]
-constexpr std::size_t kMaxTexts = 64;       // that wait for a page to read
-constexpr int kMaxNonsense = 100;           // messages in a row
-constexpr int kMaxMessages = 2000;          // a second
-constexpr int kSendBuffer = 256 * 1024;     // of the kernel, so that little of it is stale
+constexpr std::size_t kMaxTexts = 64;       // largest number of texts waiting to be sent to a page
+constexpr int kMaxNonsense = 100;           // successive malformed messages
+constexpr int kMaxMessages = 2000;          // messages per second
+constexpr int kSendBuffer = 256 * 1024;  // kernel buffer, small so that few frames in it are stale
 constexpr auto kIdleTime = std::chrono::seconds(30);
 constexpr std::string_view kServer = "prostm";
 
@@ -26,7 +26,8 @@ std::string_view view(beast::string_view text) {
   return {text.data(), text.size()};
 }
 
-/// Nothing but the page's own files and its own socket may be fetched, run or framed.
+/// Sets headers that allow only the page's own files and its own socket to be fetched, run or
+/// framed.
 void set_headers(http::fields& response, std::string_view host) {
   response.set(http::field::server, kServer);
   response.set(http::field::cache_control, "no-cache");
@@ -71,12 +72,12 @@ void Session::read_request() {
 void Session::on_request(beast::error_code wrong) {
   if (wrong == http::error::end_of_stream || wrong == http::error::partial_message) return close();
   if (wrong) {
-    // what is no request is answered; what is no connection any more cannot be
+    // answer a malformed request; a closed connection cannot be answered
     if (wrong.category() != http::make_error_code(http::error::bad_method).category())
       return close();
     HttpAnswer bad;
     bad.status = wrong == http::error::header_limit ? 431 : 400;
-    bad.body = "This is no request that this server understands.\n";
+    bad.body = "This is not a valid HTTP request.\n";
     return reply(bad, false, false);
   }
   const auto& request = parser_->get();
@@ -92,10 +93,10 @@ void Session::on_request(beast::error_code wrong) {
   if (a.live && static_cast<int>(hub_.pages.size()) >= hub_.settings.max_pages) {
     a = {};
     a.status = 503;
-    a.body = "As many pages as this server takes are open already.\n";
+    a.body = "Too many pages are open.\n";
   }
   if (a.live) return upgrade(*a.live);
-  // nothing more is read from whoever sends requests that can be understood in two ways
+  // close the connection after an ambiguous request
   reply(a, request.keep_alive() && a.status != 400, parts.method == "HEAD");
 }
 
@@ -153,7 +154,7 @@ void Session::upgrade(Room room) {
 
 void Session::read_message() {
   socket_->async_read(buffer_, [self = shared_from_this()](beast::error_code wrong, std::size_t) {
-    // a message that is too large has closed the connection already
+    // an oversized message has already closed the connection
     if (wrong) return self->drop();
     if (self->socket_->got_text()) {
       self->on_message(beast::buffers_to_string(self->buffer_.data()));
@@ -194,7 +195,7 @@ void Session::on_message(const std::string& text) {
 void Session::tell_error(const std::string& sentence, const std::string& control) {
   nlohmann::ordered_json json = {{"type", "error"}, {"sentence", sentence}};
   if (!control.empty()) json["id"] = control;
-  if (texts_.size() >= kMaxTexts) return;  // nobody reads them: see check_stall
+  if (texts_.size() >= kMaxTexts) return;  // the page does not read them: see check_stall()
   texts_.push_back(std::make_shared<const std::string>(
       json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)));
   pump();
@@ -208,7 +209,7 @@ void Session::tell_state() {
 void Session::offer_frame(Clock::time_point now, EncodedFrame& frame) {
   const auto period = nanoseconds(1.0 / rate_);
   if (now + period / 4 < due_) return;
-  // keeps its pace, unless it has fallen behind
+  // keeps the rate, unless it has fallen behind
   due_ = std::max(due_ + period, now);
   if (!hub_.source.shows_frames(room_)) return;
   if (writing_) {
@@ -224,7 +225,7 @@ void Session::offer_frame(Clock::time_point now, EncodedFrame& frame) {
   write(asio::buffer(*bytes), false);
 }
 
-/// Texts go before frames: they are few, and none may be lost.
+/// Sends pending texts before frames: they are few, and none may be lost.
 void Session::pump() {
   if (writing_) return;
   if (!texts_.empty()) {
@@ -258,7 +259,7 @@ void Session::check_stall(Clock::time_point now) {
   drop();
 }
 
-/// Ends all operations with an error; nothing follows them.
+/// Makes all pending operations fail, so that the session ends.
 void Session::drop() {
   beast::get_lowest_layer(*socket_).close();
 }

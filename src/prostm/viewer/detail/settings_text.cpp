@@ -22,7 +22,7 @@ class TomlValues final : public SettingsReader {
   std::vector<std::pair<std::string, std::string>> values;
 
  private:
-  /// JSON's escapes are among TOML's.
+  /// Quotes as JSON: its escapes are valid in TOML.
   static std::string quoted(const std::string& text) {
     return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   }

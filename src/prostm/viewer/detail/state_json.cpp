@@ -24,7 +24,7 @@ Json choices_json(const RunControl& control, const LiveSettings& settings) {
   return choices;
 }
 
-/// A control's number as pages know it.
+/// A control's value in the form used by pages.
 Json value_json(const RunControl& control, double value) {
   if (control.kind == ControlKind::Switch) return value != 0.0;
   if (control.kind == ControlKind::Number) return value;

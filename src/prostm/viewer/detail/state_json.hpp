@@ -1,5 +1,5 @@
 #pragma once
-/// The parts of the state message, docs/reference/wire.md. Private to viewer.
+/// Parts of the state message (docs/reference/wire.md). Private to viewer.
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,15 +13,14 @@ using Json = nlohmann::ordered_json;
 
 Json millimetres(const Vec3& p);
 
-/// Every control, in the order in which to show them. @param start settings that the run began
-/// with.
+/// All controls in display order. @param start initial settings of the run.
 Json controls_json(const LiveSettings& settings, const LiveSettings& start);
-/// @param holder the page that holds the page's hand, or 0.
+/// @param holder page that holds the page's hand, or 0.
 Json transport_json(const LiveState& state, PageHandState hand, std::uint32_t holder);
-/// Rates that the settings ask for. @param advice while they are not held.
+/// Rates set by the settings. @param advice current advice, None while they are held.
 Json rates_json(const PipelineSettings& settings, const Advice& advice);
 Json tracker_json(const std::optional<TrackerStatus>& tracker);
-/// @param file that the pose is saved to. @param saved whether it has been.
+/// @param saved whether the pose was saved. @param file the file to which it is saved.
 Json calibration_json(const std::optional<CalibrationGuide>& steps, bool saved,
                       const std::string& file, bool muted);
 

@@ -12,7 +12,7 @@ bool Chain::refuses(int current, int segment, int rep, int mode) {
 }
 
 void Chain::set(int segment, const Shape& shape, int mode, std::uint64_t value, std::int64_t tick) {
-  // counted by the length and rate that the segment had before, as the firmware does
+  // counted with the length and rate that the segment had before, like the firmware
   const std::int64_t lap_before = lap(segment, tick);
   shape_[static_cast<std::size_t>(segment)] = shape;
   mode_ = mode;
@@ -41,12 +41,12 @@ void Chain::go_to(std::int64_t tick, int gpio, std::uint64_t now) {
     state_ = State::Finite;
     segment_ = wanted_;
     alternates_ = false;
-    // in step with the segment's laps, or from this sample on
+    // in phase with the segment's laps, or from this sample on
     const std::int64_t sample = tick / shape().divider;
     begin_ = mode_ == kSyncIdx ? sample - sample % shape().cycle : sample;
   }
   if (state_ == State::Endless && alternates_) {
-    // both segments count on the laps of the one that was set to alternate
+    // both segments count the laps of the one that was set to alternate
     const std::int64_t now_lap = lap(segment_, tick);
     if (now_lap > alternated_lap_) {
       const bool odd = (now_lap - alternated_lap_) % 2 != 0;

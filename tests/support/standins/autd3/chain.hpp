@@ -1,12 +1,12 @@
 #pragma once
-/// Two segments of which one plays, and the rules by which the other takes over.
+/// Two segments, one of which plays, and the rules for switching to the other.
 
 #include <array>
 #include <cstdint>
 
 namespace standin {
 
-/// Modes of a change-over, as the firmware numbers them.
+/// Modes of a switch, numbered as in the firmware.
 enum Mode : int {
   kSyncIdx = 0,
   kSysTime = 1,
@@ -15,7 +15,7 @@ enum Mode : int {
   kNone = 0xFE,
   kImmediate = 0xFF
 };
-inline constexpr int kEndless = 0xFFFF;  // of `rep`, which otherwise is loops − 1
+inline constexpr int kEndless = 0xFFFF;  // in `rep`, which otherwise is loops − 1
 
 /// Length and rate of a segment.
 struct Shape {
@@ -24,18 +24,18 @@ struct Shape {
   int rep = kEndless;
 };
 
-/// The player of focal points, or of modulation. Time is counted in ticks of 40 kHz from the
+/// The player of focal points, or of modulation. Time is counted in ticks of 40 kHz since the
 /// system's epoch, which all segments share.
 class Chain {
  public:
   explicit Chain(Shape shape) : shape_{shape, shape} {}
 
-  /// Whether the firmware refuses this mode for a segment that is written while `current` plays.
+  /// Whether the firmware rejects this mode for a segment that is written while `current` plays.
   static bool refuses(int current, int segment, int rep, int mode);
 
-  /// Sets the segment that takes over. Its shape counts from here on.
+  /// Sets the segment to switch to. Its shape applies from here on.
   void set(int segment, const Shape& shape, int mode, std::uint64_t value, std::int64_t tick);
-  /// Goes on to a tick.
+  /// Advances to a tick.
   /// @param gpio the inputs. @param now time of the tick [ns].
   void go_to(std::int64_t tick, int gpio, std::uint64_t now);
 
@@ -56,8 +56,8 @@ class Chain {
   int segment_ = 0, wanted_ = 0, mode_ = kSyncIdx;
   std::uint64_t value_ = 0;
   bool alternates_ = false;
-  std::int64_t set_lap_ = 0;            // of the wanted segment, when it was set
-  std::int64_t alternated_lap_ = 0;     // at which segments changed last
+  std::int64_t set_lap_ = 0;            // of the wanted segment when it was set
+  std::int64_t alternated_lap_ = 0;     // of the last alternation
   std::int64_t begin_ = 0, index_ = 0;  // first sample of a finite loop; sample that plays
 };
 

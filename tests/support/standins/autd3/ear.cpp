@@ -11,7 +11,7 @@ namespace {
 constexpr double kUnit = 0.025e-3, kPitch = 10.16e-3;  // [m]
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr std::size_t kMostLogged = 2'000'000;
-constexpr std::int64_t kChecked = 101;  // one sample in so many has its phases checked
+constexpr std::int64_t kChecked = 101;  // the phases of one in this many samples are checked
 
 std::array<int, 3> units_of(std::uint64_t word) {
   std::array<int, 3> p{};
@@ -26,7 +26,7 @@ int byte_of(std::uint64_t word) {
   return static_cast<int>(word >> 54 & 0xFF);
 }
 
-/// Phases of the firmware: tables of a turn in 256 steps, and sums of bytes.
+/// Phases as in the firmware: tables with 256 steps per turn, and sums of bytes.
 int sine(int phase) {
   return static_cast<int>(std::lround(127.5 * (1.0 + std::sin(kTurn * (phase & 255) / 256.0))));
 }
@@ -114,7 +114,7 @@ void Ear::check_phases(const Playing& playing) {
   for (int row = 0; row < 14; ++row) {
     for (int column = 0; column < 18; ++column) {
       if (row == 1 && (column == 1 || column == 2 || column == 16)) continue;
-      // as the firmware does, in whole numbers
+      // as in the firmware, in integers
       const int x = static_cast<int>(std::lround(column * kPitch / kUnit)),
                 y = static_cast<int>(std::lround(row * kPitch / kUnit));
       int sine_sum = 0, cosine_sum = 0;
@@ -128,7 +128,7 @@ void Ear::check_phases(const Playing& playing) {
         const int phase = (distance << 14) / playing.sound_speed + offset;
         sine_sum += sine(phase);
         cosine_sum += sine(phase + 64);
-        // as physics has it
+        // by the exact physics
         const double ex = kUnit * fx - column * kPitch, ey = kUnit * fy - row * kPitch,
                      ez = kUnit * fz;
         sum += std::polar(

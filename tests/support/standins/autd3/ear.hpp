@@ -1,6 +1,6 @@
 #pragma once
-/// A unit's output: when it sounds, how its focal points move, and whether its phases
-/// are those of the focal points.
+/// A unit's output: when it emits, how its focal points move, and whether its phases
+/// match the focal points.
 
 #include <array>
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace standin {
 
-/// A sample that played, as it is written to a log: 88 bytes, little-endian.
+/// A played sample as written to a log: 88 bytes, little-endian.
 struct Played {
-  double time = 0.0;  // of its begin, on the monotonic clock [s]
+  double time = 0.0;  // start, on the monotonic clock [s]
   std::int32_t index = 0;
   std::uint8_t segment = 0, slots = 0, loudest = 0, intensity = 0;  // loudest modulation
   std::int64_t divider = 0;
@@ -23,25 +23,25 @@ static_assert(sizeof(Played) == 88);
 
 class Ear {
  public:
-  /// Hears what plays at a tick. @param time of the tick [s].
+  /// Records the output at a tick. @param time of the tick [s].
   void hear(const Playing& playing, std::int64_t tick, double time);
   void keep_log(bool yes) { logs_ = yes; }
   const std::vector<Played>& log() const { return log_; }
 
-  std::int64_t samples = 0;  // that sounded
+  std::int64_t samples = 0;  // with output
   double last_sound = 0.0;   // when a transducer was last driven [s]
   bool sounds = false;
-  std::int64_t silences = 0;     // begun after sound
+  std::int64_t silences = 0;     // number of silences after sound
   double longest_silence = 0.0;  // between sounds [s]
   double largest_step = 0.0;     // of a focal point above 1 % from sample to sample [m]
   double largest_speed = 0.0;    // a step over the sampling period [m/s]
-  double phase_error = 0.0;      // of a transducer whose sum is ≥ 0.5 of the slots [1/256 turn]
+  double phase_error = 0.0;      // for transducers whose sum is ≥ 0.5 of the slots [1/256 turn]
   int largest_key = 0;           // largest intensity · modulation / 255, of 255
 
  private:
   struct Focus {
     std::array<double, 3> place{};  // [m], in the unit's frame
-    double level = 0.0;             // share of full intensity, before modulation
+    double level = 0.0;             // fraction of full intensity, before modulation
   };
   struct Sample {
     std::vector<Focus> foci;

@@ -1,5 +1,5 @@
-// A stand-in for AUTD3 units behind a server of v38's remote protocol. It knows nothing of the code
-// that it tests. Prints its port, then an answer to each line of its standard input, and a report
+// A stand-in for AUTD3 units behind a server of v38's remote protocol. It shares nothing with the
+// code under test. Prints its port, then an answer to each line of its standard input, and a report
 // at its end.
 #include <cstdio>
 #include <cstdlib>

@@ -93,7 +93,7 @@ void Server::wait() {
   nfds_t count = 1;
   if (client_ >= 0 && !stalled && out_.empty()) waiting[count++] = {client_, POLLIN, 0};
   if (client_ < 0 && listener_ >= 0) waiting[count++] = {listener_, POLLIN, 0};
-  // silence lets it sleep a little longer
+  // sleeps for up to 1 ms, less if a reply is due
   std::int64_t left = kMillisecond;
   if (!out_.empty() && !stalled)
     left = std::clamp<std::int64_t>(out_.front().due - now(), 0, kMillisecond);
@@ -101,7 +101,7 @@ void Server::wait() {
   if (::ppoll(waiting.data(), count, &time, nullptr) > 0 && waiting[0].revents != 0) read_control();
 }
 
-/// Lets the units play until now.
+/// Lets the units play up to the present time.
 void Server::play() {
   const std::int64_t until = now() / kTick;
   for (; tick_ < until; ++tick_) {
@@ -130,7 +130,7 @@ void Server::accept() {
   greeted_ = has_units_ = leaves_ = false;
 }
 
-/// The units go on playing: the server's link does not silence them.
+/// The units continue to play: the server's link does not silence them.
 void Server::disconnect() {
   if (client_ >= 0) ::close(client_);
   client_ = -1;
@@ -161,7 +161,7 @@ void Server::read_client() {
   disconnect();
 }
 
-/// Answers the first message. @return its size; 0 if more of it must come first.
+/// Answers the first message. @return its size; 0 if it is incomplete.
 std::size_t Server::take_message() {
   const int kind = static_cast<unsigned char>(in_[0]);
   const std::int64_t at_once = std::max(now(), out_.empty() ? 0 : out_.back().due) + delay_;
@@ -251,7 +251,7 @@ bool Server::geometry_is_right(const std::string& bytes) {
     }
     if (std::abs(square - 1.0) > 1e-3) problem("a unit's quaternion is not of length 1");
   }
-  // a bus that is opened again finds its units as they were
+  // a bus that is reopened finds its units unchanged
   if (units_.size() != count) units_.assign(count, Unit());
   for (Unit& unit : units_) unit.set_version(options_.version);
   return has_units_ = true;
@@ -268,7 +268,7 @@ void Server::refuse(const std::string& words) {
   out_.push_back({now(), bytes + words});
 }
 
-/// Does what is due: handles frames, and sends replies.
+/// Does all that is due: handles frames, and sends replies.
 void Server::flush() {
   while (client_ >= 0 && !out_.empty() && out_.front().due <= now()) {
     const Out out = std::move(out_.front());
@@ -286,7 +286,7 @@ void Server::flush() {
       --drops_;
       continue;
     }
-    // replies are short, and a client that does not read them is at fault
+    // replies are short, so a client that does not read them is at fault
     if (::send(client_, out.bytes.data(), out.bytes.size(), MSG_NOSIGNAL) !=
         static_cast<ssize_t>(out.bytes.size())) {
       return disconnect();

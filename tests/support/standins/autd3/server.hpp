@@ -13,13 +13,13 @@
 namespace standin {
 
 struct Options {
-  int port = 0;                // 0: a free one
-  double frames_per_ms = 1.0;  // 0: as fast as they come
+  int port = 0;                // 0: any free port
+  double frames_per_ms = 1.0;  // 0: as fast as they arrive
   int version = 0xA5;
   bool keeps_log = false;
 };
 
-/// One thread; run() returns when the control line ends or says quit.
+/// Runs on one thread; run() returns when the control input ends or says quit.
 class Server {
  public:
   explicit Server(const Options& options);
@@ -57,12 +57,12 @@ class Server {
   std::deque<Out> out_;
   bool greeted_ = false, has_units_ = false, leaves_ = false;
   std::vector<Unit> units_;
-  std::vector<double> places_;  // of the units, as told
+  std::vector<double> places_;  // of the units, as received
   Ear ear_;
-  double other_sound_ = 0.0;  // when another unit than the first was last driven [s]
+  double other_sound_ = 0.0;  // when a unit other than the first was last driven [s]
 
   std::int64_t tick_ = 0;
-  std::int64_t next_slot_ = 0;  // [ns], when the bus takes the next frame
+  std::int64_t next_slot_ = 0;  // when the bus accepts the next frame [ns]
   std::int64_t stalled_until_ = 0, closed_until_ = 0, delay_ = 0;
   int drops_ = 0;
   std::int64_t frames_ = 0, connections_ = 0, problems_ = 0, goodbyes_ = 0;

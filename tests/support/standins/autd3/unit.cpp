@@ -16,7 +16,7 @@ enum Error {
   kBadMode = 8
 };
 constexpr int kBegin = 1, kEnd = 2, kUpdate = 4, kSegment1 = 8;
-constexpr std::uint64_t kMargin = 10'000'000;  // [ns] that a system time lies ahead
+constexpr std::uint64_t kMargin = 10'000'000;  // by which a system time lies ahead [ns]
 constexpr std::size_t kStoredFoci = 65'536, kStoredModulation = 65'536;
 constexpr Shape kCleared{1, 0xFFFF, kEndless};
 
@@ -26,7 +26,7 @@ std::size_t at(int index) {
 
 }  // namespace
 
-/// Reads a payload from its begin. What lies beyond its end reads as 0 and is noted.
+/// Reads a payload from its start. Reading beyond its end gives 0 and is recorded.
 class Unit::Bytes {
  public:
   explicit Bytes(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -162,7 +162,7 @@ int Unit::clear() {
   least_phase_ = 40;
   foci_ = {};
   for (Segment& segment : foci_) segment.shape = kCleared;
-  // both modulations are full
+  // both modulations are at full level
   for (Modulation& m : modulation_) m = {{255, 255}, {2, 0xFFFF, kEndless}};
   foci_segment_ = modulation_segment_ = 0;
   writes_foci_ = writes_modulation_ = -1;

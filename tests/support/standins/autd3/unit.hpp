@@ -1,5 +1,5 @@
 #pragma once
-/// A unit of AUTD3, v12.1: what its firmware does with a frame, and what its transducers are told.
+/// A unit of AUTD3, v12.1: how its firmware handles a frame, and the output of its transducers.
 
 #include <array>
 #include <cstdint>
@@ -18,22 +18,22 @@ struct Playing {
   int segment = 0;
   std::int64_t index = 0;
   int foci = 0;                          // per sample; 0: a gain
-  std::array<std::uint64_t, 8> words{};  // of the sample
+  std::array<std::uint64_t, 8> words{};  // of the current sample
   int intensity = 0;                     // of a gain's strongest transducer, if there is no sample
   int modulation = 0;
   int sound_speed = 0;  // 1/64 m/s
   std::int64_t divider = 1;
 };
 
-/// Errors of the firmware are answered and counted. Faults that it would not notice, but that a
-/// correct client never makes, are counted as problems and described.
+/// Errors of the firmware are answered and counted. Faults that the firmware would not detect, but
+/// that a correct client never makes, are counted as problems and described.
 class Unit {
  public:
   Unit();
 
-  /// Handles a frame that came at a tick (of 40 kHz) and a time [ns].
+  /// Handles a frame that arrives at a tick (of 40 kHz) and a time [ns].
   void take(std::span<const std::uint8_t> frame, std::int64_t tick, std::uint64_t now);
-  /// Goes on to a tick.
+  /// Advances to a tick.
   void go_to(std::int64_t tick, std::uint64_t now);
   std::array<std::uint8_t, 2> answer() const;
   Playing playing() const;
@@ -41,7 +41,7 @@ class Unit {
   void set_hot(bool hot) { hot_ = hot; }
   void set_version(int major) { version_ = major; }
   void ignore_modulation(bool yes) { ignores_modulation_ = yes; }
-  /// Answers the next frames with this error, as often as told.
+  /// Answers the next frames with this error, a given number of times.
   void refuse(int error, int times) { refusal_ = error, refusals_ = times; }
   const std::array<std::int64_t, 16>& errors() const { return errors_; }
   std::int64_t problems() const { return problems_; }
@@ -66,7 +66,7 @@ class Unit {
   }
 
   struct Segment {
-    std::vector<std::uint64_t> words;  // as stored: what was written before stays behind `written`
+    std::vector<std::uint64_t> words;  // as stored: earlier data remain behind `written`
     std::size_t written = 0;
     Shape shape;
     int foci = 0, sound_speed = 0, gain = 0;
@@ -79,8 +79,8 @@ class Unit {
   std::array<Segment, 2> foci_;
   std::array<Modulation, 2> modulation_;
   Chain foci_chain_, modulation_chain_;
-  int foci_segment_ = 0, modulation_segment_ = 0;  // that the CPU takes for the current ones
-  int writes_foci_ = -1, writes_modulation_ = -1;  // segment that is being written; −1: none
+  int foci_segment_ = 0, modulation_segment_ = 0;  // that the CPU considers current
+  int writes_foci_ = -1, writes_modulation_ = -1;  // segment being written; −1: none
   int foci_mode_ = 0, modulation_mode_ = 0;
   std::uint64_t foci_value_ = 0, modulation_value_ = 0;
 

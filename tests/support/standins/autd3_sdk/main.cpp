@@ -1,6 +1,6 @@
 /// Stands in for a chain of AUTD3 units with the AUTD3 SDK's firmware: a port on ::1 for the group,
-/// as the SDK's simulator has, and a port of its own for each unit. Takes commands by lines on its
-/// standard input and answers each with a line of JSON.
+/// like the SDK's simulator, and a separate port for each unit. Reads commands line by line from
+/// its standard input and answers each with a line of JSON.
 ///
 /// usage: autd3_sdk_units [--units N] [--port P] [--activate-bytes 10|14] [--record] [--seed S]
 
@@ -39,7 +39,7 @@ std::int64_t host_now() {
   return clock_now(CLOCK_MONOTONIC);
 }
 
-/// Nanoseconds from the realtime clock, whose time stamps datagrams get, to the monotonic one.
+/// Nanoseconds from the realtime clock, which time-stamps datagrams, to the monotonic clock.
 std::int64_t clock_offset() {
   std::int64_t best = INT64_MAX, offset = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -101,7 +101,7 @@ class Chain {
 
   /// Waits up to 1 ms for datagrams and answers them.
   void turn();
-  /// Does what a line says. @return the answer; empty: quit.
+  /// Executes a line. @return the answer; empty to quit.
   std::string obey(const std::string& line);
 
  private:
@@ -142,7 +142,7 @@ void Chain::receive(const Port& port, int unit) {
     message.msg_controllen = control.size();
     const ssize_t size = ::recvmsg(port.socket, &message, 0);
     if (size < 0) return;
-    // the time when it came, also if this program was kept from running
+    // time of arrival, even if this program was not scheduled in time
     std::int64_t came = host_now();
     for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
       if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SCM_TIMESTAMPNS) continue;
@@ -176,14 +176,14 @@ void Chain::turn() {
   std::size_t done = 0;
   for (; done < waiting_.size() && waiting_[done].due <= host_now(); ++done) handle(waiting_[done]);
   waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(done));
-  // what is delayed, or on its way to this program, must not come to a later state
+  // delayed or queued datagrams must not reach a later state
   std::int64_t safe = before;
   for (const Arrival& arrival : waiting_) safe = std::min(safe, arrival.due);
   for (auto& unit : units_) unit->advance(safe);
 }
 
 void Chain::handle(const Arrival& arrival) {
-  // each unit keeps those behind it from hearing anything until it is told to let them
+  // each unit blocks the group's datagrams for the units behind it until it is opened
   for (std::size_t u = 0; u < units_.size(); ++u) {
     standin::Unit& unit = *units_[u];
     const bool last = u + 1 == units_.size();
@@ -233,7 +233,7 @@ std::string Chain::report() const {
   return out.str();
 }
 
-/// Writes what the units played: each sample's unit, tick and words.
+/// Writes the samples that the units played: unit, tick and words of each.
 bool Chain::dump(const std::string& file) const {
   std::ofstream out(file, std::ios::binary);
   for (std::size_t u = 0; u < units_.size(); ++u) {
@@ -320,7 +320,7 @@ int main(int argc, char** argv) {
       return std::cerr << "unknown option " << name << '\n', 2;
   }
   if (units < 1 || units > 100) return std::cerr << "--units must be 1 to 100\n", 2;
-  // hardware is not kept waiting by other programs; that this may not be allowed does not matter
+  // hardware does not wait for other programs; ignored if it is not permitted
   ::setpriority(PRIO_PROCESS, 0, -15);
   Chain chain(units, port);
   chain.behaviour_.activate_bytes = static_cast<std::size_t>(activate_bytes);
@@ -333,7 +333,7 @@ int main(int argc, char** argv) {
     chain.turn();
     std::array<char, 512> buffer;
     const ssize_t got = ::read(STDIN_FILENO, buffer.data(), buffer.size());
-    if (got == 0) return 0;  // who started it is gone
+    if (got == 0) return 0;  // the parent process is gone
     if (got < 0) continue;
     typed.append(buffer.data(), static_cast<std::size_t>(got));
     for (std::size_t end; (end = typed.find('\n')) != typed.npos; typed.erase(0, end + 1))

@@ -70,10 +70,10 @@ std::int64_t Playback::index(int bank, std::int64_t tick) const {
 
 void Playback::advance(std::int64_t time) {
   const std::int64_t last = time / kTick;
-  // longer ago than anything lasts
+  // longer ago than any duration
   tick_ = std::max(tick_, last - 400'000);
   while (tick_ < last) {
-    // between the begins of samples nothing changes
+    // nothing changes between the starts of samples
     const std::int64_t next = std::min(last, next_begin());
     if (sounds_ && !muted && next > tick_ + 1) last_sounding = (next - 1) * kTick;
     tick_ = next;
@@ -82,14 +82,14 @@ void Playback::advance(std::int64_t time) {
   }
 }
 
-/// The next tick at which a sample begins, of a bank that plays or may play.
+/// The next tick at which a sample starts, in a bank that plays or may play.
 std::int64_t Playback::next_begin() const {
   std::int64_t next = INT64_MAX;
   for (const Bank& bank : banks) next = std::min(next, (tick_ / bank.divider + 1) * bank.divider);
   return next;
 }
 
-/// Follows the logic's states: waiting, a finite loop, an infinite one.
+/// Follows the states of the logic: waiting, a finite loop, an infinite loop.
 void Playback::change_over(std::int64_t tick) {
   const auto begins = [&](int bank) {
     return index(bank, tick) == 0 && index(bank, tick - 1) != 0;
@@ -111,7 +111,7 @@ void Playback::change_over(std::int64_t tick) {
   }
 }
 
-/// Looks at the sample that sounds.
+/// Records the sample that plays.
 void Playback::play(std::int64_t tick) {
   const Bank& b = banks[static_cast<std::size_t>(bank_)];
   if (b.raw) {

@@ -1,6 +1,6 @@
 #pragma once
-/// The part of an AUTD3 unit that plays its two banks, as its logic does, one tick of 40 kHz after
-/// another. Written from the protocol's facts alone; shares nothing with the driver.
+/// The part of an AUTD3 unit that plays its two banks, as its logic does, tick by tick at 40 kHz.
+/// Written from the protocol's facts alone; shares nothing with the driver.
 
 #include <array>
 #include <cstdint>
@@ -10,9 +10,9 @@
 namespace standin {
 
 struct Bank {
-  bool raw = true;  ///< as after Clear: silent
+  bool raw = true;  ///< silent, as after Clear
   std::uint32_t divider = 0xFFFF, samples = 2, slots = 1;
-  std::uint32_t repetitions = 0xFFFF;  ///< 0xFFFF: without end, else loops − 1
+  std::uint32_t repetitions = 0xFFFF;  ///< 0xFFFF: endless, else loops − 1
   std::vector<std::uint64_t> words = std::vector<std::uint64_t>(65536);
 };
 
@@ -20,10 +20,10 @@ struct Focus {
   double x = 0.0, y = 0.0, z = 0.0;  ///< in the unit's frame [mm]
   double amplitude = 0.0;            ///< 0..1
 };
-/// Foci of a sample; slots that lie in pairs at the same places make one focus each.
+/// Foci of a sample; pairs of slots at the same position are one focus each.
 std::vector<Focus> foci_of(const std::uint64_t* words, std::uint32_t slots);
 
-/// A sample that was played, for a look at it afterwards.
+/// A played sample, for later inspection.
 struct Played {
   std::int64_t tick;  ///< of 40 kHz
   std::uint32_t slots;
@@ -37,7 +37,7 @@ class Playback {
   bool muted = false;
 
   void clear();
-  /// Makes a bank take over. Mode 0: at its next begin, 0xFF: at once, 0xF0: in turn with the
+  /// Switches to a bank. Mode 0: at its next start, 0xFF: at once, 0xF0: alternating with the
   /// other. @pre the mode fits the bank's loops.
   void activate(int bank, int mode);
   /// Plays up to a time of the unit [ns].
@@ -49,10 +49,10 @@ class Playback {
   bool stopped() const { return stopped_; }
   bool pending() const { return pending_ >= 0; }
   int pending_bank() const { return pending_; }
-  /// Unit's time of the last sample with a focus above 1 % [ns]; −1 before the first.
+  /// Unit's time of the last sample with a focus above 1 % [ns]; −1 if there was none.
   std::int64_t last_sounding = -1;
-  double largest_step = 0.0;   ///< of a focus above 1 %, from sample to sample [mm]
-  double largest_speed = 0.0;  ///< that step over the samples' period [m/s]
+  double largest_step = 0.0;   ///< of a focus above 1 %, between samples [mm]
+  double largest_speed = 0.0;  ///< that step divided by the sampling period [m/s]
   std::int64_t turns = 0, stops = 0;
   std::vector<Played> played;
   bool records = false;
@@ -65,7 +65,7 @@ class Playback {
 
   std::int64_t tick_ = 0;
   int bank_ = 0, pending_ = -1;
-  bool sounds_ = false;  // the sample that plays, were it not muted
+  bool sounds_ = false;  // whether the current sample would emit unmuted
   bool stopped_ = false, finite_ = false, alternates_ = false;
   std::uint32_t loops_ = 0;
   std::int64_t last_index_ = -1;

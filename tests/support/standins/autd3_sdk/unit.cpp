@@ -196,7 +196,7 @@ Bytes Unit::set_time(const Bytes& in) {
   return status(in, 0);
 }
 
-/// Executes a frame that comes in sequence.
+/// Executes a frame that arrives in sequence.
 void Unit::frame(std::int64_t now, const Bytes& in) {
   const int sequence = in[4], command = in[5];
   ++findings_.frames;
@@ -291,7 +291,7 @@ int Unit::write_foci(const Bytes& p) {
   for (std::uint64_t i = 0; i < bytes / 8; ++i) {
     std::uint64_t& word = playback.banks[p[0]].words[first / 4 + i];
     const std::uint64_t next = number(p, 8 + 8 * i, 8);
-    // what was executed may come again if its acknowledgement was lost
+    // an executed frame may arrive again if its acknowledgement was lost
     if (word != next && (plays || pending)) findings_.error("a bank is written while it plays");
     word = next;
   }

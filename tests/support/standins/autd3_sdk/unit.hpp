@@ -25,7 +25,7 @@ struct Findings {
   void error(const std::string& what);
 };
 
-/// Options that are the same for all units.
+/// Options shared by all units.
 struct Behaviour {
   std::size_t activate_bytes = 10;  ///< length of the command that changes banks: 10 or 14
   std::int64_t lock_time = 50'000'000, ready_time = 100'000'000;  ///< after SetTime [ns]
@@ -39,7 +39,7 @@ class Unit {
  public:
   Unit(Findings& findings, Behaviour& behaviour) : findings_(findings), behaviour_(behaviour) {}
 
-  bool open = false;  ///< lets those behind it hear the group
+  bool open = false;  ///< passes the group's datagrams on to the units behind it
   bool hot = false;
   Playback playback;
   std::int64_t trips = 0;  ///< of the failsafe
@@ -52,15 +52,15 @@ class Unit {
   void set_clock(std::int64_t now, std::int64_t time, bool locks);
   std::int64_t last_sounding() const;  ///< host's time [ns]; −1: never
 
-  /// Lives up to a time.
+  /// Advances to a time.
   void advance(std::int64_t now);
-  /// Loses its power for a moment.
+  /// Loses power for a moment.
   void power_cycle();
   void trip();
-  /// Answers a datagram; empty: not at all.
+  /// Answers a datagram; empty for no answer.
   /// @param unicast whether it came to its own address. @param last whether it is the chain's last.
   std::optional<Bytes> answer(std::int64_t now, const Bytes& in, bool unicast, bool last);
-  bool sets_time = false;  ///< whether the last datagram was a SetTime that it took
+  bool sets_time = false;  ///< whether the last datagram was an accepted SetTime
   std::int64_t set_to = 0;
 
  private:
@@ -86,9 +86,9 @@ class Unit {
   Behaviour& behaviour_;
   int id_ = -1;
   bool grandmaster_ = false;
-  std::int64_t sounded_ = -1;  // last sounding by an earlier clock, in the host's time
+  std::int64_t sounded_ = -1;  // last output by an earlier clock, in the host's time
   std::int64_t offset_ = 0, locked_at_ = -1, ready_at_ = -1, forgets_at_ = -1;
-  std::int64_t host_at_ = -1;  // when the host was heard last
+  std::int64_t host_at_ = -1;  // when the last datagram of the host arrived
   std::int64_t failsafe_ = 500;
   bool silent_ = false, strict_ = false, synchronised_ = false;
   std::uint32_t steps_intensity_ = 10, steps_phase_ = 40;

@@ -44,7 +44,7 @@ struct PlanarRows {
 /// @pre x has y.rows() columns, z_re and z_im hold x.rows·y.cols() floats.
 void complex_product(const PlanarRows& x, const PackedMatrix& y, std::size_t first_panel,
                      float* z_re, float* z_im);
-/// The same, term by term, with sums in double precision.
+/// Reference for complex_product(): term by term, with sums in double precision.
 void complex_product_plain(const PlanarRows& x, const PackedMatrix& y, std::size_t first_panel,
                            float* z_re, float* z_im);
 

@@ -10,8 +10,8 @@
 // after the line above, which includes this file once for each target
 #include <hwy/highway.h>
 
-// A tile of z, a few rows by one or two vectors of columns, is kept in registers while its sums
-// run over the whole inner length; a panel of y stays in the cache while all rows of x go by.
+// A tile of z, a few rows by one or two vectors of columns, stays in registers while it is summed
+// over the whole inner dimension; a panel of y stays in the cache for all rows of x.
 HWY_BEFORE_NAMESPACE();
 namespace prostm {
 namespace HWY_NAMESPACE {
@@ -24,7 +24,7 @@ using V = hn::Vec<D>;
 
 constexpr std::size_t kLanes = hn::MaxLanes(D());
 constexpr std::size_t kVectors = kLanes == kPanel ? 1 : 2;  // per row of a tile
-constexpr std::size_t kTileRows = kVectors == 1 ? 6 : 3;    // as many as 32 or 16 registers hold
+constexpr std::size_t kTileRows = kVectors == 1 ? 6 : 3;    // most that fit in 32 or 16 registers
 
 template <std::size_t kRows>
 HWY_INLINE void tile(const PlanarRows& x, std::size_t first_row, const float* HWY_RESTRICT y,

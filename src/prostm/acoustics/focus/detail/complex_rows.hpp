@@ -7,8 +7,8 @@
 
 namespace prostm {
 
-/// Rows of complex numbers in single precision, real and imaginary parts apart. Each row is padded
-/// with zeros to whole blocks of kBlock floats and aligned to a block.
+/// Rows of complex numbers in single precision, with separate real and imaginary parts. Each row is
+/// padded with zeros to whole blocks of kBlock floats and aligned to a block.
 class ComplexRows {
  public:
   static constexpr std::size_t kBlock = 16;

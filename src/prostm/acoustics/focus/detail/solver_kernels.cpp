@@ -18,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, ComplexRows::kBlock>;
 using V = hn::Vec<D>;
 
-constexpr float kNothing = 1e-30F;  // a number with a square up to this has no phase
+constexpr float kNothing = 1e-30F;  // squared magnitude up to which a number has no phase
 
 struct C {
   V re, im;

@@ -1,6 +1,6 @@
 #pragma once
-/// The inner loops of the focus solvers that run for every sample. G has a row for each of M focal
-/// points, with a column for each transducer; drives are row 0 of their matrix.
+/// The inner loops of the focus solvers that run at every sample. G has one row for each of M focal
+/// points and one column for each transducer; drives are row 0 of their matrix.
 
 #include <complex>
 #include <span>
@@ -29,7 +29,7 @@ void propagate_drives(const ComplexRows& g, const ComplexRows& drive, std::span<
 /// R = G B of (A13), B the naive focus of each focal point; row j of `out` is column j of R.
 void correlate(const ComplexRows& g, std::size_t foci, ComplexRows& out);
 
-/// Runs the iterations of (A13) on x, M numbers in row 0, and leaves x with the magnitudes a.
+/// Runs the iterations of (A13) on x, M numbers in row 0; on return x has the magnitudes a.
 /// @param a in the real parts of row 0. @param scratch one row of M numbers.
 void iterate_gs_pat(const ComplexRows& r, const ComplexRows& a, std::size_t foci, int iterations,
                     ComplexRows& x, ComplexRows& scratch);
@@ -39,7 +39,7 @@ void iterate_gs_pat(const ComplexRows& r, const ComplexRows& a, std::size_t foci
 void phase_gradients(const ComplexRows& g, std::span<const Complex> u, const ComplexRows& drive,
                      ComplexRows& turns, std::span<float> normal);
 
-/// Turns the phases of q, |q_n| = 1, by δ = Σ_m t_mn x_m, as q (1 + iδ)/|1 + iδ|.
+/// Shifts the phases of q, |q_n| = 1, by about δ = Σ_m t_mn x_m: q becomes q (1 + iδ)/|1 + iδ|.
 void turn_phases(const ComplexRows& turns, std::span<const float> x, ComplexRows& drive);
 
 }  // namespace prostm::solving

@@ -1,5 +1,5 @@
 #pragma once
-/// Waves of one frequency on a plate that ends at the outline of a mask, (S15) and (S16) of
+/// Time-harmonic waves on a plate that ends at the outline of a mask, (S15) and (S16) of
 /// docs/design/skin.md.
 
 #include <Eigen/SparseCore>
@@ -12,7 +12,7 @@
 
 namespace prostm {
 
-/// A mask of square elements and the corners between them, which carry the displacement.
+/// A mesh of the square elements of a mask; their corners are the nodes of the displacement.
 class BoundedWaves {
  public:
   /// @param mask rows·cols, row-major; not 0 where there is plate. @param step edge of an element
@@ -25,10 +25,10 @@ class BoundedWaves {
   }
   int corners() const { return corners_; }
 
-  /// Forgets all frequencies.
+  /// Removes all frequencies.
   void clear() { frequencies_.clear(); }
-  /// Prepares one more frequency: waves of wave number k and strength A. Takes long.
-  /// @pre Im k < 0, so that no free wave lasts
+  /// Adds a frequency: waves of wave number k and strength A. Slow: factors a matrix.
+  /// @pre Im k < 0, so that free waves decay
   void add(std::complex<double> wave_number, std::complex<double> strength);
   /// Solves ∇²W + k²W = −A P with free edges for the i-th frequency that was added. Allocates.
   /// @param pressure P at the corners [Pa]. @return W at the corners [m]

@@ -19,7 +19,7 @@ Fft2::Fft2(int rows, int cols)
       cols_(cols),
       in_(static_cast<std::size_t>(std::max(rows, cols))),
       out_(in_.size()) {
-  // the library makes its tables at the first call for each length
+  // the library builds its tables at the first call for each length
   for (const int length : {rows, cols}) {
     transform<true>(in_.data(), length);
     transform<false>(in_.data(), length);
@@ -28,7 +28,7 @@ Fft2::Fft2(int rows, int cols)
 
 template <bool kForward>
 void Fft2::transform(const std::complex<double>* line, int length) {
-  // one value is its own transform; the library has no table for it
+  // a single value is its own transform; the library does not support this length
   if (length == 1) {
     out_[0] = line[0];
   } else if constexpr (kForward) {

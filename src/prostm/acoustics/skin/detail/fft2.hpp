@@ -8,7 +8,8 @@
 
 namespace prostm {
 
-/// The smallest n ≥ `least` without a prime factor above 5, which transforms fast. @pre least ≥ 1
+/// Returns the smallest n ≥ `least` without a prime factor above 5, for which the FFT is fast. @pre
+/// least ≥ 1
 int fast_length(int least);
 
 /// Transforms a raster of rows × cols complex values, row-major, in place. Allocates only in its

@@ -25,7 +25,7 @@ enum Tag : std::uint8_t {
 };
 enum Flag : std::uint8_t { kBegin = 1, kEnd = 2, kTransition = 4, kSegment1 = 8, kStrict = 4 };
 
-/// Writes numbers one after the other into a frame that begins all 0.
+/// Writes numbers one after the other into a zeroed frame.
 class Writer {
  public:
   explicit Writer(Frame& frame) : at_(frame.data() + kHead) { frame.fill(0); }
@@ -55,7 +55,7 @@ int most_samples(int slots, int index) {
   return (index == 0 ? kFirstFoci : kNextFoci) / slots;
 }
 
-/// The samples of a segment in one of its frames.
+/// Returns the samples of a segment that one of its frames holds.
 Samples samples_of(const FociSegment& segment, int index) {
   const int before =
       index == 0 ? 0
@@ -138,24 +138,24 @@ std::string error_sentence(int error) {
     case 2:
       return "was sent a message out of turn (error 2): another program may be driving it";
     case 3:
-      return "does not tell the version of its firmware (error 3): it must be v12.1";
+      return "does not report the version of its firmware (error 3): it must be v12.1";
     case 4:
       return "refused a list of patterns (error 4), which prostm does not send: another program "
              "may "
              "be driving it";
     case 5:
-      return "refused to change over to a block that it does not hold (error 5): another program "
+      return "refused to switch to a block that it does not hold (error 5): another program "
              "may "
              "be driving it";
     case 6:
-      return "got a block too late for its start (error 6): the link is slower than it was "
+      return "received a block too late for its start (error 6): the link is slower than it was "
              "measured";
     case 7:
       return "refused the sampling rate, which is faster than its silencer's limit (error 7): "
              "another "
              "program may have set the silencer";
     case 8:
-      return "refused to change over in this way (error 8): another program may be driving it";
+      return "refused this kind of transition (error 8): another program may be driving it";
     default:
       return "answered with error " + std::to_string(error) + ", which AUTD3 v38 does not have";
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// Frames of AUTD3's firmware, v38: what each byte means to a unit. All numbers are little-endian.
+/// Frames of AUTD3's firmware, v38, byte by byte. All numbers are little-endian.
 
 #include <array>
 #include <cstdint>
@@ -20,11 +20,11 @@ struct Answer {
   int error() const { return acknowledgement >> 4; }
 };
 
-/// Moment when a segment takes over, as the firmware numbers it.
+/// Moment when a segment starts to play, as the firmware numbers it.
 enum class Transition : std::uint8_t {
-  Gpio = 2,          ///< when a GPIO input is high; for loops that end
-  Alternate = 0xF0,  ///< at once, and then both segments in turn, at every loop's end ("Ext")
-  Later = 0xFE,      ///< not now; a segment that alternates plays what was written at its turn
+  Gpio = 2,          ///< when a GPIO input is high; for finite loops
+  Alternate = 0xF0,  ///< at once; then segments alternate at the end of every loop ("Ext")
+  Later = 0xFE,      ///< not now; while segments alternate, at the segment's next turn
   Immediate = 0xFF
 };
 
@@ -37,18 +37,20 @@ inline constexpr std::uint8_t kHot = 1, kModulationSegment = 2, kFociSegment = 4
 
 inline constexpr int kMostModulation = 254;  ///< samples of modulation in one frame
 
-// Each writes one frame but for its message id.
+// Each function writes one frame, except its message id.
 void nop(Frame& frame);
-/// Forgets everything, and synchronises the units' clocks.
+/// Clears all data of the units and synchronises their clocks.
 void clear_and_synchronise(Frame& frame);
 void read_state(Frame& frame);
 void firmware(Frame& frame, Info info);
 /// Sets the four emulated GPIO inputs, bit by bit.
 void gpio(Frame& frame, std::uint8_t inputs);
-/// Phases and intensities change over this many periods of 40 kHz; faster changes are refused.
+/// Spreads changes of phases and intensities over `steps` periods of 40 kHz; units then refuse
+/// faster patterns.
 void silencer(Frame& frame, int steps);
-/// Plays a modulation once, from its first sample on, and then holds its last. @pre GPIO 0 is high,
-/// and the other segment plays. @param samples 2 to kMostModulation, each of `divider` / 40 kHz.
+/// Plays a modulation once, from its first sample on, and then holds its last sample. @pre GPIO 0
+/// is high, and the other segment is playing. @param samples 2 to kMostModulation, each of
+/// `divider` / 40 kHz.
 void modulation(Frame& frame, std::span<const std::uint8_t> samples, int segment, int divider);
 
 /// A segment of focal points that repeats without end.
@@ -60,20 +62,20 @@ struct FociSegment {
   int divider = 6;           ///< periods of 40 kHz per sample
   double sound_speed = 0.0;  ///< [m/s]
 };
-/// Number of frames that a segment takes: whole samples, up to 74 slots in the first frame and 77
-/// in each of the others.
+/// Number of frames of a segment, which hold whole samples: up to 74 slots in the first frame, and
+/// 77 in each of the others.
 int foci_frames(int slots, int samples);
-/// Number of samples that the first `frames` of them hold.
+/// Number of samples in the first `frames` frames.
 int samples_in_frames(int slots, int samples, int frames);
 /// Writes frame `index` of a segment.
 /// @param words of one unit for the whole segment, sample-major.
 void foci(Frame& frame, const FociSegment& segment, std::span<const SlotWord> words, int index);
 
-/// Lets a segment play, and then both in turn. @pre both are written, alike in length and rate, and
-/// have played: only then does the firmware count their laps alike.
+/// Plays a segment, and then both segments in turn. @pre both have the same length and rate, are
+/// written, and have played: only then does the firmware count their loops in step.
 void alternate(Frame& frame, int segment);
 
-/// Says in one sentence what an error of the firmware, 1..8, means for who uses the array.
+/// Explains an error of the firmware, 1..8, to the user of the array, in a clause.
 std::string error_sentence(int error);
 
 }  // namespace prostm::autd3

@@ -97,18 +97,17 @@ bool Loops::play(const std::stop_token& stop) {
   }
   if (stop.stop_requested()) return true;
   if (next && !take(std::move(*next))) return false;
-  // a link that is lost is noticed between renewals too
-  return session_.poll() && keep_sounding();
+  // poll, to notice a lost link between renewals too
+  return session_.poll() && keep_audible();
 }
 
-/// Writes a loop to the segment that does not play, and changes over to it. The one that plays is
-/// kept audible meanwhile.
+/// Writes a loop to the idle segment and switches to it. Keeps the playing loop audible until then.
 bool Loops::take(Loop loop) {
   const int free = 1 - segment_, frames = output_.frames(loop.length());
   const bool near = is_near(playing_, loop, step_);
   for (int index = 0; index < frames; ++index) {
     const bool changes = index + 1 == frames;
-    if (changes && !near ? !output_.mute() : !keep_sounding()) return false;
+    if (changes && !near ? !output_.mute() : !keep_audible()) return false;
     if (!output_.send(free, Transition::Immediate, loop.length(), index, loop.words) ||
         !session_.confirm()) {
       return false;
@@ -120,10 +119,10 @@ bool Loops::take(Loop loop) {
   return true;
 }
 
-bool Loops::keep_sounding() {
+bool Loops::keep_audible() {
   if (playing_.foci == 0 || Clock::now() < renewed_ + kRenewal) return true;
   renewed_ = Clock::now();
-  return output_.sound(renewed_, from_now(kSounds));
+  return output_.sound(renewed_, from_now(kAudibleTime));
 }
 
 }  // namespace prostm::autd3

@@ -13,7 +13,7 @@
 
 namespace prostm::autd3 {
 
-/// A loop, and what the units are told of it.
+/// A loop, and its encoding for the units.
 struct Loop {
   std::vector<FocusSample> samples;  // sample-major
   int foci = 0;
@@ -21,35 +21,35 @@ struct Loop {
   int length() const { return foci > 0 ? static_cast<int>(samples.size()) / foci : 0; }
 };
 
-/// Says in one sentence why a loop cannot be played; empty if it can.
+/// Returns a sentence that says why a loop cannot be played; empty if it can.
 std::string loop_problem(std::span<const FocusSample> samples, int foci, int most_foci, int slots);
 
-/// Whether one loop can take over from another at any sample: each focal point that sounds moves by
-/// at most `step` [m] then.
+/// Whether one loop can replace another at any sample: each audible focal point then moves by at
+/// most `step` [m].
 bool is_near(const Loop& from, const Loop& to, double step);
 
-/// Plays a loop in one segment while the next one is written to the other. It is kept audible for
-/// 60 ms at a time. A new loop takes over at once: at the same sample if it is as long and near,
-/// otherwise in a moment of silence. begin() and play() return false if the session failed.
+/// Plays a loop in one segment while the next loop is written to the other. It is kept audible for
+/// 60 ms at a time. A new loop starts at once: at the current sample if it has the same length and
+/// is near, otherwise in a short silence. begin() and play() return false if the session failed.
 class Loops {
  public:
   Loops(Session& session, Output& output) : session_(session), output_(output) {}
 
   /// Sets the next loop. Any thread.
   void load(Loop loop);
-  /// Forgets all loops. @pre nothing plays.
+  /// Discards all loops. @pre nothing is playing.
   void forget();
-  /// @param step that a focal point may make from sample to sample [m].
+  /// @param step largest step of a focal point from sample to sample [m].
   bool begin(double step);
-  /// Waits a little, and does what is due.
+  /// Waits briefly, then loads a new loop and renews the current one if they are due.
   bool play(const std::stop_token& stop);
 
-  /// Time that a loop takes to stop sounding after its last renewal [s].
-  static constexpr double kSounds = 60e-3;
+  /// Time for which a loop stays audible after its last renewal [s].
+  static constexpr double kAudibleTime = 60e-3;
 
  private:
   bool take(Loop loop);
-  bool keep_sounding();
+  bool keep_audible();
 
   Session& session_;
   Output& output_;

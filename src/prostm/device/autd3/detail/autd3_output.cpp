@@ -46,14 +46,14 @@ bool Output::send(int segment, Transition transition, int samples, int index,
 }
 
 bool Output::begin(TurnClock* turns) {
-  heard_until_ = {};
+  audible_until_ = {};
   if (!session_.prepare(turns)) return false;
   silencer(session_.frame(0), shape_.divider);
   if (!session_.exchange_for_all()) return false;
-  // a modulation begins while this input is high: at once, so it never waits
+  // a modulation begins while this input is high: keep it high, so that modulations begin at once
   gpio(session_.frame(0), 1);
   if (!session_.exchange_for_all()) return false;
-  // silence holds before anything else can sound
+  // silence applies before anything can be audible
   modulation_ = 0;
   return send_modulation({});
 }
@@ -67,19 +67,19 @@ bool Output::send_modulation(const SoundingTime& time, Clock::time_point latest)
   return session_.exchange_for_all(latest);
 }
 
-/// Times of a modulation that begins now, for what is to be heard from `next` to `end`.
+/// Times of a modulation that begins now and makes output audible from `next` to `end`.
 SoundingTime Output::times_of(Clock::time_point now, Clock::time_point next,
                               Clock::time_point end) const {
   const double margin = early(session_.slow_frame());
   SoundingTime time;
   time.next = std::max(0.0, Seconds(next - now).count());
   time.end = std::min(Seconds(end - now).count() - margin, longest());
-  // what has begun to fall when this arrives falls silent, and rises again
-  time.sounds = now >= heard_from_ && now + to_duration(session_.slow_frame()) < heard_until_;
+  // output that is already ramping down when this arrives falls silent first, then rises again
+  time.sounds = now >= audible_from_ && now + to_duration(session_.slow_frame()) < audible_until_;
   return time;
 }
 
-bool Output::sound_is_in_time(Clock::time_point next, Clock::time_point end) const {
+bool Output::is_in_time(Clock::time_point next, Clock::time_point end) const {
   const SoundingTime time = times_of(Clock::now(), next, end);
   return time.end > time.next + 2.0 * kRamp;
 }
@@ -97,20 +97,20 @@ bool Output::sound(Clock::time_point next, Clock::time_point end) {
       break;
     }
     if (!send_modulation(time, latest)) return false;
-    if (!time.sounds) heard_from_ = now + to_duration(time.next);
-    heard_until_ = now + to_duration(time.end - kRamp);
+    if (!time.sounds) audible_from_ = now + to_duration(time.next);
+    audible_until_ = now + to_duration(time.end - kRamp);
     if (Clock::now() <= now + margin) return true;
   }
-  // it may be heard for too long: at once silent
-  heard_until_ = {};
+  // output may be audible for too long: silence it now
+  audible_until_ = {};
   return send_modulation({});
 }
 
 bool Output::mute() {
-  if (!is_heard()) return true;
+  if (!is_audible()) return true;
   const bool sent =
       send_modulation({.sounds = true, .next = 0.0, .end = kRamp + modulation_sample()});
-  heard_until_ = {};
+  audible_until_ = {};
   if (sent) std::this_thread::sleep_for(to_duration(2.0 * kRamp));
   return sent;
 }

@@ -10,47 +10,45 @@
 namespace prostm::autd3 {
 
 /// Writes segments, and keeps them audible by modulations that end by themselves (write_dead_man).
-/// Everything returns false if the session failed. Nothing but configure() allocates.
+/// All functions that return bool return false if the session failed. Only configure() allocates.
 class Output {
  public:
   using Clock = Session::Clock;
 
   explicit Output(Session& session) : session_(session) {}
 
-  /// @param divider periods of 40 kHz per sample. @param samples of a segment at most.
+  /// @param divider periods of 40 kHz per sample. @param samples largest number in a segment.
   void configure(int slots, int divider, int samples, double sound_speed);
-  /// Words of a unit's segment, to be filled before write().
+  /// Words of a unit's segment; fill them before write().
   std::vector<SlotWord>& words(std::size_t unit) { return words_[unit]; }
 
-  /// Clears the units and mutes them; `turns` sees what they answer from then on.
+  /// Clears the units and mutes them; from then on `turns` receives their answers.
   bool begin(TurnClock* turns);
-  /// Frames of a segment of so many samples.
+  /// Number of frames of a segment with this many samples.
   int frames(int samples) const { return foci_frames(shape_.slots, samples); }
-  /// Sends one of them; Session::confirm() is still to be called.
+  /// Sends one frame of a segment; call Session::confirm() afterwards.
   /// @param words of each unit, for the whole segment.
   bool send(int segment, Transition transition, int samples, int index,
             const std::vector<std::vector<SlotWord>>& words);
-  /// Writes a segment out of words().
-  /// @param prepare called before a frame, while the one before it is under way, with the number of
-  /// samples that are needed from the segment's begin.
+  /// Writes a segment from words().
+  /// @param prepare called before each frame, while the previous frame is in flight, with the
+  /// number of samples needed so far, counted from the segment's beginning.
   template <class Prepare>
   bool write(int segment, Transition transition, int samples, Prepare&& prepare);
-  /// Lets output be heard from `next` until `end`; returns before that. It begins with a ramp where
-  /// it is not heard yet. If it is too late for that, silence goes on. A modulation begins when it
-  /// arrives: if that is not known well enough, it is told again, so nothing is heard after `end`.
-  /// If it is too late for that too, the session fails.
+  /// Makes output audible from `next` until `end`, with a ramp up if it was silent; returns before
+  /// `next`. If it is too late for that, output stays silent. A modulation begins when it arrives:
+  /// if its arrival time is too uncertain, it is sent again, so that nothing is audible after
+  /// `end`. If it is too late for that too, the session fails.
   bool sound(Clock::time_point next, Clock::time_point end);
-  /// Whether there is time left for that.
-  bool sound_is_in_time(Clock::time_point next, Clock::time_point end) const;
-  /// Lets it fall silent by a ramp, and waits for that.
+  /// Whether there is enough time left for sound().
+  bool is_in_time(Clock::time_point next, Clock::time_point end) const;
+  /// Silences output by a ramp, and waits until it is silent.
   bool mute();
-  /// Moment at which output begins to fall silent by itself.
-  Clock::time_point heard_until() const { return heard_until_; }
-  bool is_heard() const { return Clock::now() < heard_until_; }
-  /// Falls silent, makes the units forget what they play, and says goodbye.
+  bool is_audible() const { return Clock::now() < audible_until_; }
+  /// Silences output, clears the units, and closes the session.
   void finish();
 
-  /// A modulation so long at most [s].
+  /// Longest duration of a modulation [s].
   double longest() const;
 
  private:
@@ -64,7 +62,7 @@ class Output {
   int modulation_divider_ = kMostModulation;
   int modulation_ = 0;  // segment
   std::vector<std::vector<SlotWord>> words_;
-  Clock::time_point heard_from_{}, heard_until_{};
+  Clock::time_point audible_from_{}, audible_until_{};
 };
 
 template <class Prepare>

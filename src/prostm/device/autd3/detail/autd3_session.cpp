@@ -42,7 +42,7 @@ std::string version_of(int number, int patch) {
   return number < kVersions.front().first ? "older than v9" : "newer than v12.1";
 }
 
-/// A server's words without what a terminal would obey.
+/// Returns a server's message without control characters, which a terminal would obey.
 std::string plain(std::string_view words) {
   std::string text(words.substr(0, 300));
   for (char& c : text)
@@ -68,8 +68,8 @@ bool Session::fail(const std::string& sentence) {
 
 bool Session::lost() {
   return fail(
-      "is lost: it closed the connection or did not answer within 200 ms; look after its program "
-      "and its cable");
+      "is lost: it closed the connection or did not answer within 200 ms; check its program and "
+      "its cable");
 }
 
 bool Session::open(Clock::duration patience) {
@@ -81,7 +81,7 @@ bool Session::open(Clock::duration patience) {
     return fail("cannot be reached: " + why +
                 "; start AUTD3's simulator (port 8080) or RemoteServer, and check the port");
   }
-  if (!greet(patience) || !tell_geometry(patience)) return false;
+  if (!greet(patience) || !send_geometry(patience)) return false;
   nop(frames_[0]);
   return exchange_for_all() && read_firmware();
 }
@@ -94,8 +94,8 @@ bool Session::prepare(TurnClock* turns) {
   return exchange_for_all();
 }
 
-/// Sends the request that was written and reads its reply. If the server does not accept it, says
-/// so with its words.
+/// Sends the request in `out_` and reads the reply. If the server refuses it, fails with the
+/// server's message.
 bool Session::ask(Request request, const char* what, Clock::duration patience,
                   Clock::time_point latest) {
   if (!link_.send(out_, latest, kPatience)) return lost();
@@ -108,7 +108,7 @@ bool Session::ask(Request request, const char* what, Clock::duration patience,
       case Reply::Kind::Refused:
         return fail(std::string("refused ") + what + ": \"" + plain(reply.words) + "\"");
       case Reply::Kind::Strange:
-        return fail(std::string("gave a strange answer to ") + what +
+        return fail(std::string("gave an unknown answer to ") + what +
                     ": it is no server of AUTD3 v38");
       case Reply::Kind::Incomplete:
         break;
@@ -128,7 +128,7 @@ bool Session::greet(Clock::duration patience) {
   return ask(Request::Hello, "the greeting of protocol 1", patience);
 }
 
-bool Session::tell_geometry(Clock::duration patience) {
+bool Session::send_geometry(Clock::duration patience) {
   out_.assign({static_cast<std::uint8_t>(Request::Geometry)});
   const auto count = static_cast<std::uint32_t>(units_.size());
   append(out_, &count, sizeof(count));
@@ -137,7 +137,7 @@ bool Session::tell_geometry(Clock::duration patience) {
     const Quat q(X_DU.linear());
     for (const double part : {q.w(), q.x(), q.y(), q.z()}) append_float(out_, part);
   }
-  return ask(Request::Geometry, "the places of the units", patience);
+  return ask(Request::Geometry, "the poses of the units", patience);
 }
 
 bool Session::read_firmware() {
@@ -218,7 +218,7 @@ bool Session::exchange_for_all(Clock::time_point latest) noexcept {
 bool Session::poll() noexcept {
   const Clock::time_point asked = Clock::now();
   out_.assign(1, static_cast<std::uint8_t>(Request::Read));
-  if (!ask(Request::Read, "a question for the units' state", kPatience)) return false;
+  if (!ask(Request::Read, "a request for the units' state", kPatience)) return false;
   for (std::size_t u = 0; u < answers_.size(); ++u)
     answers_[u] = {in_[1 + kAnswerBytes * u], in_[2 + kAnswerBytes * u]};
   if (turns_ != nullptr) turns_->see(asked, Clock::now(), playing_segment());

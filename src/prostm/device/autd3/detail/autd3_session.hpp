@@ -1,5 +1,5 @@
 #pragma once
-/// A conversation with AUTD3 units behind a server of v38's remote protocol.
+/// A session with AUTD3 units behind a server of v38's remote protocol.
 
 #include <chrono>
 #include <string>
@@ -12,9 +12,9 @@
 
 namespace prostm::autd3 {
 
-/// Sends a frame to every unit and waits until all have acknowledged it; one frame is under way at
-/// a time. After a failure, problem() says why in one sentence, and only open() helps. A process of
-/// its own holds the connection, see LinkProcess.
+/// Sends a frame to every unit and waits until all have acknowledged it; one frame is in flight at
+/// a time. After a failure, problem() gives the reason in one sentence, and the session must be
+/// opened again. A separate process holds the connection, see LinkProcess.
 class Session {
  public:
   using Clock = std::chrono::steady_clock;
@@ -22,17 +22,18 @@ class Session {
   /// @param units poses X_DU of the units' frames, 1..kMostUnits.
   Session(HostPort address, std::vector<Pose> units);
 
-  /// Connects, tells where the units are, and reads the versions of their firmware. Waits that long
-  /// at most for the server to open its bus. @return false if anything of it failed.
+  /// Connects, sends the poses of the units, and reads the versions of their firmware. @param
+  /// patience longest time to wait for the server to open its bus. @return false if any step
+  /// failed.
   bool open(Clock::duration patience);
-  /// Silences the units, asks them to tell their state from now on, and lets `turns` see which
+  /// Clears the units, makes them report their state from now on, and passes to `turns` which
   /// segment they play.
   bool prepare(TurnClock* turns);
-  /// Measures how long frames take, which changes nothing else.
+  /// Measures the duration of frames; has no other effect.
   bool measure();
-  /// Fails with these words, which follow the address.
+  /// Fails with this clause, which follows the address in problem().
   bool give_up(const char* words) { return fail(words); }
-  /// Says goodbye.
+  /// Sends Close and closes the connection.
   void close() noexcept;
 
   std::size_t units() const { return frames_.size(); }
@@ -41,18 +42,18 @@ class Session {
   /// Copies the first unit's frame to the others.
   void same_for_all();
   /// Sends the frames. @return false if the server did not take them in time.
-  /// @param latest after which they would do harm; the connection is cut instead.
+  /// @param latest time after which the frames would do harm; the connection is cut instead.
   bool send(Clock::time_point latest = Clock::time_point::max()) noexcept;
-  /// Waits until all units have answered. @return false if one refused or did not in time.
+  /// Waits until all units have acknowledged the frames. @return false if one refused or timed out.
   bool confirm() noexcept;
-  /// Both, with the first unit's frame for all.
+  /// Does both, with the first unit's frame for all units.
   bool exchange_for_all(Clock::time_point latest = Clock::time_point::max()) noexcept;
-  /// Asks for the units' answers without a new frame. @return false if they do not come.
+  /// Requests the units' answers without sending a frame. @return false if none arrive.
   bool poll() noexcept;
 
   int playing_segment()
-      const;            ///< of focal points, by all units; −1 while they differ or do not tell
-  bool is_hot() const;  ///< whether a unit says that its temperature is too high
+      const;            ///< segment that all units play; −1 while they differ or do not report it
+  bool is_hot() const;  ///< whether a unit reports that it is too hot
 
   double frames_per_ms() const { return 1e-3 / frame_time_; }
   double slow_frame() const { return slow_frame_; }  ///< time that one frame in ten exceeds [s]
@@ -68,7 +69,7 @@ class Session {
 
  private:
   bool greet(Clock::duration patience);
-  bool tell_geometry(Clock::duration patience);
+  bool send_geometry(Clock::duration patience);
   bool read_firmware();
   bool ask(Request request, const char* what, Clock::duration patience,
            Clock::time_point latest = Clock::time_point::max());

@@ -12,10 +12,10 @@ namespace {
 using Clock = Session::Clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr double kBeforeTurn = 0.3e-3;  // from when on the units are asked whether it came [s]
-constexpr double kLongestWait = 0.5;    // for a turn [s], in which the units are
-constexpr int kMostPolls = 40;          // asked so often at least
-// of a block's time: a late block that its link took longer for is late because of the link
+constexpr double kBeforeTurn = 0.3e-3;  // polling starts this long before a turn is expected [s]
+constexpr double kLongestWait = 0.5;    // longest wait for a turn [s],
+constexpr int kMostPolls = 40;          // with at least this many polls
+// share of a block's time: if the link took longer for a late block, the link made it late
 constexpr double kSlowLink = 0.5;
 
 Clock::duration to_duration(double seconds) {
@@ -63,7 +63,7 @@ bool Stream::play_block(const std::stop_token& stop) {
   if (!wait_for_turn(stop)) return false;
   if (stop.stop_requested()) return true;
   const std::int64_t turn = turns_.turns();
-  // not before the block begins, and not after it may end
+  // audible not before the block can begin, and not after it can end
   const Clock::time_point next = turns_.next_latest(), due = turns_.next_earliest(),
                           end = due + to_duration(budget_.block_time);
   {
@@ -78,7 +78,7 @@ bool Stream::play_block(const std::stop_token& stop) {
   const double link_time = Seconds(Clock::now() - begun - fill_time_).count();
   ++block_;
   const bool late = turns_.turns() != turn || Clock::now() > due;
-  const bool quiet = late || !output_.sound_is_in_time(next, end);
+  const bool quiet = late || !output_.is_in_time(next, end);
   {
     const std::lock_guard lock(mutex_);
     stats_.blocks = block_;
@@ -89,7 +89,7 @@ bool Stream::play_block(const std::stop_token& stop) {
   return quiet || output_.sound(next, end);
 }
 
-/// Waits until the segment that was written last plays.
+/// Waits until the segment that was written last is playing.
 bool Stream::wait_for_turn(const std::stop_token& stop) {
   const Clock::time_point end = Clock::now() + to_duration(kLongestWait);
   int polls = 0;
@@ -99,7 +99,7 @@ bool Stream::wait_for_turn(const std::stop_token& stop) {
     if (!session_.poll()) return false;
     if (turns_.playing() == written_) break;
     if (++polls > kMostPolls && Clock::now() > end)
-      return session_.give_up("does not change over from block to block");
+      return session_.give_up("does not switch from block to block");
     std::this_thread::sleep_for(Session::kPolls);
   }
   return true;
@@ -113,7 +113,7 @@ bool Stream::write_block(int segment) {
   });
 }
 
-/// Asks for samples of the block, and encodes them.
+/// Pulls samples of the block and encodes them.
 void Stream::fill(int from, int to) {
   const Clock::time_point begun = Clock::now();
   const auto width = static_cast<std::size_t>(source_->foci()),
@@ -158,7 +158,7 @@ double Stream::play_time(std::int64_t sample) const {
 }
 
 double Stream::ask_time(std::int64_t sample) const {
-  // while a block plays, the next one is asked for
+  // while a block plays, the next one is requested
   return play_time(sample - sample % budget_.block_samples) - budget_.block_time;
 }
 

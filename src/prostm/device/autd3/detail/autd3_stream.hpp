@@ -11,22 +11,22 @@
 
 namespace prostm::autd3 {
 
-/// The units play two segments in turn. Each block is written to the one that does not play, and
-/// then a modulation that lets it be heard to its end. A block that is written too late is not
-/// heard, nor is anything that was written before it. begin() and play_block() return false if the
-/// session failed.
+/// The units play two segments in turn. Each block is written to the idle segment, followed by a
+/// modulation that makes it audible until its end. A block that is written too late stays silent,
+/// and so does the segment's old content. begin() and play_block() return false if the session
+/// failed.
 class Stream {
  public:
   Stream(Session& session, Output& output, SlotEncoder& encoder, const Autd3Budget& budget)
       : session_(session), output_(output), encoder_(encoder), budget_(budget) {}
 
-  /// @param source outlives the stream. @pre nothing plays.
+  /// @param source outlives the stream. @pre nothing is playing.
   void start(SampleSource& source);
-  /// Sets both segments, silent, to play in turn.
+  /// Starts both segments, silent, in turn.
   bool begin();
-  /// Writes the next block when the segment for it is free.
+  /// Writes the next block once its segment is free.
   bool play_block(const std::stop_token& stop);
-  /// The link is lost: counts the blocks that cannot be played until begin() succeeds.
+  /// Call it when the link is lost: counts the missed blocks until begin() succeeds.
   void lose();
 
   // any thread
@@ -49,14 +49,14 @@ class Stream {
   std::vector<FocusSample> samples_;  // of a block
   std::vector<SlotWord> words_;       // of a sample, all units
   TurnClock turns_;
-  Session::Clock::duration fill_time_{};  // of the block, in the source and the encoder
-  std::int64_t block_ = 0;                // to be filled next
+  Session::Clock::duration fill_time_{};  // time of a block in the source and the encoder
+  std::int64_t block_ = 0;                // next block to fill
   int written_ = 0;                       // segment
 
   mutable std::mutex mutex_;  // guards the members below
   DeviceStats stats_;
   LinkLoss loss_;
-  std::int64_t anchor_block_ = 0;  // a block, and when it begins to play
+  std::int64_t anchor_block_ = 0;  // a block, and the time when it begins to play
   Session::Clock::time_point anchor_time_{};
 };
 

@@ -23,16 +23,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// -- the process itself: it was forked from a program with threads, so until _exit() it only calls
-// functions that are safe in signal handlers
+// -- the forked process: its parent has threads, so until _exit() it calls only functions that are
+// async-signal-safe
 
-constexpr int kReplyTime = 30, kSilenceTime = 50;  // [ms], after the owner has gone
+constexpr int kReplyTime = 30, kSilenceTime = 50;  // [ms], after the owner has left
 constexpr std::uint8_t kClear = 0x01;
 constexpr int kMessages = 16;
 constexpr std::size_t kMostRequest = 5 + kMostUnits * kFrameBytes;
 constexpr std::size_t kTimeBytes = sizeof(std::int64_t);  // before each request
 
-// only used in the forked process, which has a copy of its own
+// used only in the forked process, which has its own copy
 std::array<std::uint8_t, kMostRequest> request_buffer;
 std::array<std::uint8_t, kMostReply> reply_buffer;
 
@@ -46,7 +46,7 @@ std::int64_t now_ms() {
   return now_ns() / 1'000'000;
 }
 
-bool should_try_again() {
+bool should_retry() {
   return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
 }
 
@@ -69,14 +69,13 @@ class Relay {
 
  private:
   bool owner_left() const { return deadline_ != 0; }
-  /// From now on, waits only so long.
+  /// Records that the owner has left: from now on, waits are limited.
   void leave() {
     if (!owner_left()) deadline_ = now_ms() + kReplyTime;
   }
   bool is_late() const { return owner_left() && now_ms() >= deadline_; }
 
-  /// Waits for a socket. Meanwhile it notes when the owner leaves. @return false if the time is
-  /// over.
+  /// Waits for a socket, and notices if the owner leaves. @return false on a timeout.
   bool wait(int socket, short events) {
     while (!is_late()) {
       std::array<pollfd, 2> waiting = {pollfd{socket, events, 0}, pollfd{pipe_, 0, 0}};
@@ -98,7 +97,7 @@ class Relay {
       if (got > 0) {
         to += got;
         size -= static_cast<std::size_t>(got);
-      } else if (got == 0 || !should_try_again() || !wait(socket, POLLIN)) {
+      } else if (got == 0 || !should_retry() || !wait(socket, POLLIN)) {
         return false;
       }
     }
@@ -111,21 +110,21 @@ class Relay {
       if (sent > 0) {
         from += sent;
         size -= static_cast<std::size_t>(sent);
-      } else if (!should_try_again() || !wait(socket, POLLOUT)) {
+      } else if (!should_retry() || !wait(socket, POLLOUT)) {
         return false;
       }
     }
     return true;
   }
 
-  /// Reads a whole request from the owner. @return its size; 0 if the owner has gone.
+  /// Reads a whole request from the owner. @return its size; 0 if the owner has left.
   std::size_t read_request() {
     if (!read_some(pipe_, reinterpret_cast<std::uint8_t*>(&latest_), kTimeBytes)) return 0;
     std::size_t have = 0;
     for (;;) {
       const std::size_t known = request_bytes({request_buffer.data(), have}, units_);
       if (known > 0 && known <= have) return have;
-      // the first byte alone, then as much as tells the size
+      // the first byte alone, then enough bytes to know the size
       const std::size_t want = known > 0 ? known : have == 0 ? 1 : 5;
       if (want > request_buffer.size() || want <= have) return 0;
       if (!read_some(pipe_, request_buffer.data() + have, want - have)) return 0;
@@ -133,8 +132,8 @@ class Relay {
     }
   }
 
-  /// Passes the request in the buffer on, and reads the reply. @return false if the server has
-  /// gone.
+  /// Forwards the request in the buffer, and reads the reply. @return false if the connection to
+  /// the server is lost.
   bool ask(std::size_t size) {
     const auto request = static_cast<Request>(request_buffer[0]);
     if (request == Request::Send) message_ = request_buffer[1];
@@ -158,7 +157,7 @@ class Relay {
     return ask(request_bytes({request_buffer.data(), 1}, units_));
   }
 
-  /// Clears all units, sees that they have done it, and says goodbye.
+  /// Clears all units, waits until they acknowledge it, and sends Close.
   void silence() {
     if (!has_units_) return;
     deadline_ = now_ms() + kSilenceTime;
@@ -184,8 +183,8 @@ class Relay {
   const int pipe_, server_;
   const std::size_t units_;
   std::size_t reply_size_ = 0;
-  std::int64_t latest_ = 0;    // for the request in the buffer [ns]
-  std::int64_t deadline_ = 0;  // [ms]; 0: the owner is there
+  std::int64_t latest_ = 0;    // limit for the request in the buffer [ns]
+  std::int64_t deadline_ = 0;  // [ms]; 0: the owner has not left
   int message_ = 0;            // id of the last frame
   bool has_units_ = false, is_closed_ = false;
 };
@@ -194,7 +193,7 @@ void close_all_but(int a, int b) {
   const auto close_from = [](int first, int last) {
     if (first > last) return;
     if (::syscall(SYS_close_range, first, last, 0U) == 0) return;
-    constexpr int kUsual = 1'024;  // an old kernel
+    constexpr int kUsual = 1'024;  // for kernels without close_range
     for (int file = first; file <= std::min(last, kUsual); ++file) ::close(file);
   };
   constexpr int kLast = 0x7FFF'FFFF;
@@ -222,9 +221,9 @@ void ignore_signals() {
   ::_exit(0);
 }
 
-// -- its owner
+// -- the owner
 
-/// Forks with all signals held back, so that no handler of the program runs in the new process.
+/// Forks with all signals blocked, so that no handler of the program runs in the new process.
 pid_t fork_quietly() {
   sigset_t all, before;
   ::sigfillset(&all);

@@ -13,13 +13,13 @@
 
 namespace prostm::autd3 {
 
-/// Passes requests to a server of AUTD3's remote protocol and its replies back, whole messages one
-/// at a time. It is forked from the calling process, ignores the signals that end programs, and
-/// keeps no other file open. When the owner closes its end, or ends in any way, it lets the reply
-/// that is under way come in, makes all units forget what they play, says goodbye to the server,
-/// and ends; if the server answers nothing, within kPatience. It does the same when a request comes
-/// later than its owner allowed. When the server goes, it ends, and the owner's end is closed. Not
-/// for several threads.
+/// Relays requests to a server of AUTD3's remote protocol and replies back to the owner, one whole
+/// message at a time. The process is forked from the caller, ignores the signals that terminate
+/// programs, and keeps no other file open. When the owner closes its end or terminates in any way,
+/// the process waits for the pending reply, clears all units, sends Close to the server and exits,
+/// within kPatience even if the server does not answer. It does the same when a request arrives
+/// later than its owner allowed. When the server closes the connection, the process exits, which
+/// closes the owner's end. Not thread-safe.
 class LinkProcess {
  public:
   using Clock = std::chrono::steady_clock;
@@ -31,16 +31,17 @@ class LinkProcess {
   LinkProcess(const LinkProcess&) = delete;
   LinkProcess& operator=(const LinkProcess&) = delete;
 
-  /// Connects and starts the process, or says in a few words why that failed; empty if it worked.
-  /// @param units 1..kMostUnits, that will be told to the server.
+  /// Connects and starts the process. @return the reason of a failure in a few words; empty on
+  /// success.
+  /// @param units number of units that the geometry will declare, 1..kMostUnits.
   std::string open(const HostPort& address, std::size_t units, Duration patience);
-  /// Closes the owner's end, and waits until the process has ended.
+  /// Closes the owner's end, and waits until the process has exited.
   void close() noexcept;
   bool is_open() const { return pipe_.is_open(); }
   pid_t process() const { return process_; }  ///< 0: none
 
-  /// Sends a whole request; false if that failed, as of TcpConnection.
-  /// @param latest after which it must not reach the server.
+  /// Sends a whole request; false if that failed, as for TcpConnection::send().
+  /// @param latest time after which the request must not reach the server.
   bool send(std::span<const std::uint8_t> bytes, Clock::time_point latest,
             Duration patience) noexcept;
   bool receive(std::span<std::uint8_t> bytes, Duration patience) noexcept {

@@ -31,7 +31,7 @@ bool wait(int socket, short events, Clock::time_point end) {
   }
 }
 
-bool is_to_be_tried_again() {
+bool should_retry() {
   return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
 }
 
@@ -84,7 +84,7 @@ bool TcpConnection::send(std::span<const std::uint8_t> bytes, Duration patience)
     const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (sent > 0) {
       bytes = bytes.subspan(static_cast<std::size_t>(sent));
-    } else if (!is_to_be_tried_again() || !wait(socket_, POLLOUT, end)) {
+    } else if (!should_retry() || !wait(socket_, POLLOUT, end)) {
       return false;
     }
   }
@@ -97,7 +97,7 @@ bool TcpConnection::receive(std::span<std::uint8_t> bytes, Duration patience) no
     const ssize_t got = ::recv(socket_, bytes.data(), bytes.size(), 0);
     if (got > 0) {
       bytes = bytes.subspan(static_cast<std::size_t>(got));
-    } else if (got == 0 || !is_to_be_tried_again() || !wait(socket_, POLLIN, end)) {
+    } else if (got == 0 || !should_retry() || !wait(socket_, POLLIN, end)) {
       return false;
     }
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// A TCP connection whose every wait has an end.
+/// A TCP connection with a timeout on every call.
 
 #include <chrono>
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace prostm {
 
-/// A client's end. Nothing but open() allocates, and nothing throws. Not for several threads.
+/// The client's end. Only open() allocates, and nothing throws. Not thread-safe.
 class TcpConnection {
  public:
   using Duration = std::chrono::steady_clock::duration;
 
   TcpConnection() = default;
-  /// Takes over a connected stream socket that does not block.
+  /// Takes ownership of a connected, non-blocking stream socket.
   explicit TcpConnection(int socket) : socket_(socket) {}
   ~TcpConnection() { close(); }
   TcpConnection(const TcpConnection&) = delete;
@@ -29,16 +29,15 @@ class TcpConnection {
     return *this;
   }
 
-  /// Connects, or says in a few words why it cannot; empty if it could.
+  /// Connects. @return the reason of a failure in a few words; empty on success.
   std::string open(const HostPort& address, Duration patience);
   void close() noexcept;
   bool is_open() const { return socket_ >= 0; }
   int socket() const { return socket_; }  ///< −1: not open
 
-  /// Sends all bytes; false if that took longer than `patience` or the connection is lost. The
-  /// connection is of no use then.
+  /// Sends all bytes; false on a timeout or a lost connection, which is then unusable.
   bool send(std::span<const std::uint8_t> bytes, Duration patience) noexcept;
-  /// Receives as many bytes as fit, likewise.
+  /// Receives exactly as many bytes as fit; fails likewise.
   bool receive(std::span<std::uint8_t> bytes, Duration patience) noexcept;
 
  private:

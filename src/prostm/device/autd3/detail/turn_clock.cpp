@@ -11,7 +11,7 @@ void TurnClock::start(Time now, int segment, Duration period) {
   playing_ = segment;
 }
 
-/// Two turns that no answer told of lead back to the same segment.
+/// Counts two turns that no answer reported: they lead back to the same segment.
 void TurnClock::skip_two() {
   earliest_ += 2 * (period_ - drift());
   latest_ += 2 * (period_ + drift());
@@ -32,7 +32,7 @@ void TurnClock::see(Time asked, Time now, int segment) {
     earliest = std::max(after, next_earliest());
     latest = std::min(before, next_latest());
   }
-  // what was expected does not fit: this turn tells the time by itself
+  // the prediction does not fit: use the answers around this turn alone
   if (earliest > latest) {
     earliest = after;
     latest = before;

@@ -1,30 +1,30 @@
 #pragma once
-/// Times at which a device that plays two segments in turn changes over.
+/// Estimates when a device that plays two segments in turn switches between them.
 
 #include <chrono>
 #include <cstdint>
 
 namespace prostm {
 
-/// Learns when the turns come from a device's answers, each of which tells the segment that plays.
-/// Turns come a period apart by the device's clock, and each lies between two answers: one asked
-/// for before it, and one that came after it. So every turn narrows the time in which it can have
-/// been, however late the answers are. Has no clock: times come from the caller.
+/// Estimates the times of turns from a device's answers, each of which reports the playing segment.
+/// Turns are one period apart on the device's clock, and each lies between two answers: one
+/// requested before it, and one received after it. So each turn narrows the interval of possible
+/// times, however late the answers are. Has no clock of its own: the caller passes the times.
 class TurnClock {
  public:
   using Time = std::chrono::steady_clock::time_point;
   using Duration = std::chrono::steady_clock::duration;
 
-  /// The device's clock may run slower or faster than the host's by this part of a period.
+  /// The device's clock may deviate from the host's by 1/kDrift of a period, in either direction.
   static constexpr int kDrift = 5'000;
 
   void start(Time now, int segment, Duration period);
-  /// An answer that was asked for at `asked` and came at `now`. @param segment 0 or 1, or −1 if it
-  /// did not tell.
+  /// Takes an answer that was requested at `asked` and received at `now`. @param segment 0 or 1, or
+  /// −1 if the answer does not report it.
   void see(Time asked, Time now, int segment);
 
-  int playing() const { return playing_; }       ///< segment
-  std::int64_t turns() const { return turns_; }  ///< seen since start()
+  int playing() const { return playing_; }       ///< current segment
+  std::int64_t turns() const { return turns_; }  ///< turns since start()
   // earliest and latest time of the last turn, and of the next one
   Time earliest() const { return earliest_; }
   Time latest() const { return latest_; }
@@ -37,7 +37,7 @@ class TurnClock {
 
   Duration period_{};
   Time earliest_{}, latest_{};
-  Time asked_{};  // for the answer before
+  Time asked_{};  // request time of the previous answer
   int playing_ = 0;
   std::int64_t turns_ = 0;
 };

@@ -19,7 +19,7 @@ using std::chrono::milliseconds;
 
 constexpr int kTries = 3;
 constexpr milliseconds kAnswer{200}, kStale{60}, kLinger{10}, kPoll{10};
-// units forget their numbers 20 ms after they are told to
+// units reset their numbers 20 ms after the request
 constexpr milliseconds kSettle{120};
 constexpr std::chrono::seconds kNumberTime{10}, kClockTime{10};
 constexpr std::size_t kMostUnits = 255;
@@ -37,12 +37,12 @@ std::uint16_t port_of(const std::string& text, const std::string& digits) {
   return port;
 }
 
-/// The group of all nodes on an interface.
+/// Returns the multicast group of all nodes on an interface.
 UdpAddress on_interface(const std::string& text, const std::string& name) {
   UdpAddress address{kAllNodes, kPort, ::if_nametoindex(name.c_str())};
   if (address.scope == 0)
     throw std::invalid_argument("autd3-sdk://" + text + ": there is no network interface '" + name +
-                                "'; 'ip link' lists those that there are");
+                                "'; 'ip link' lists the interfaces");
   return address;
 }
 
@@ -54,8 +54,8 @@ UdpAddress numeric(const std::string& text, const std::string& host) {
   addrinfo* found = nullptr;
   if (::getaddrinfo(host.c_str(), nullptr, &hints, &found) != 0)
     throw std::invalid_argument("autd3-sdk://" + text +
-                                " must name a network interface, as autd3-sdk://%eth0, or an IPv6 "
-                                "address in brackets, as autd3-sdk://[::1]:44336");
+                                " must name a network interface, such as autd3-sdk://%eth0, or an "
+                                "IPv6 address in brackets, such as autd3-sdk://[::1]:44336");
   sockaddr_in6 raw{};
   std::memcpy(&raw, found->ai_addr, sizeof(raw));
   ::freeaddrinfo(found);
@@ -124,7 +124,7 @@ bool Discovery::next(Answer& answer, Kind kind, Clock::time_point end) {
   }
 }
 
-/// Asks a single unit until it answers, a few times.
+/// Sends a request to a single unit until it answers, a few times at most.
 bool Discovery::exchange(const UdpAddress& to, Kind kind, Answer& answer) {
   Datagram d;
   for (int i = 0; i < kTries; ++i) {
@@ -140,7 +140,7 @@ bool Discovery::reset(const std::stop_token& stop) {
   return wait(kSettle, stop);
 }
 
-/// Asks for the next unit without a number. @return how many answered: it should be one.
+/// Finds the next unit without a number. @return how many answered: there should be one.
 int Discovery::discover(Answer& answer) {
   Datagram d;
   ask(group_, d, Kind::Discover);
@@ -159,7 +159,7 @@ std::string Discovery::give_number(const UdpAddress& to, Unit& unit) {
     unit.address = answer.from;
     return {};
   }
-  // the answer may have been lost, and with the number the address changes
+  // the answer may have been lost, and the unit's address changes with its number
   for (const Unit& found : who_is_there(kAnswer)) {
     if (found.info.unit != unit_ || (found.info.flags & kAssigned) == 0) continue;
     unit.address = found.address;
@@ -168,7 +168,7 @@ std::string Discovery::give_number(const UdpAddress& to, Unit& unit) {
   return "does not answer when it is given its number";
 }
 
-/// Takes back numbers that units have kept from before. @return whether there were such units.
+/// Resets units that have kept an old number. @return whether there were any.
 bool Discovery::release_stale(const std::vector<Unit>& units) {
   bool any = false;
   for (const Unit& found : who_is_there(kStale)) {
@@ -211,7 +211,7 @@ std::string Discovery::number(std::vector<Unit>& units, const std::stop_token& s
     if (std::string why = give_number(before, unit); !why.empty())
       return fmt::format("unit {} {}", units.size(), why);
     if (!exchange(unit.address, Kind::UnblockDownstream, answer))
-      return fmt::format("unit {} does not answer when it is to let the next one hear",
+      return fmt::format("unit {} does not answer when it is told to unblock the next one",
                          units.size());
     if (answer.status != kOk)
       return fmt::format("unit {} {}", units.size(), status_words(answer.status));
@@ -220,7 +220,7 @@ std::string Discovery::number(std::vector<Unit>& units, const std::stop_token& s
   }
   if (units.empty() && other_version_ != 0)
     return fmt::format(
-        "answers in wire version {}; prostm speaks version {}, so update the units' "
+        "answers in wire version {}, but prostm speaks version {}; update the units' "
         "firmware to that of the AUTD3 SDK 0.10",
         other_version_, kVersion);
   if (units.empty()) return "does not answer";
@@ -252,8 +252,8 @@ std::string Discovery::start_clock(std::vector<Unit>& units, const std::stop_tok
     if (late == units.size()) return {};
   }
   return fmt::format(
-      "unit {} does not join the common clock within 10 s; switch the units off and "
-      "on, and see that no other device on the network keeps PTP time",
+      "unit {} does not synchronise to the common clock within 10 s; switch the units off and "
+      "on, and check that no other device on the network is a PTP clock",
       late);
 }
 

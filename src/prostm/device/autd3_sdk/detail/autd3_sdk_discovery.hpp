@@ -11,12 +11,12 @@
 
 namespace prostm::sdk {
 
-/// Where units are looked for: the group of all nodes on an interface, or a simulator's address.
-/// @param text %INTERFACE or [IPv6], with :PORT if it is not the usual one.
+/// Returns the address to search: the multicast group of all nodes on an interface, or a simulator.
+/// @param text %INTERFACE or [IPv6], with :PORT if it is not the default.
 /// @throws std::invalid_argument with a sentence.
 UdpAddress group_address(const std::string& text);
 
-/// Says in clauses what to look after where nobody answers.
+/// Returns advice, in clauses, for the case that no unit answers.
 std::string nobody_words(const UdpAddress& group);
 
 struct Unit {
@@ -24,21 +24,22 @@ struct Unit {
   UnitInfo info;
 };
 
-/// Units are numbered along their chain, from the host on: each keeps those behind it from hearing
-/// the group until it has a number and is told to let them. Functions return in a clause what went
-/// wrong, empty if nothing did. Not for several threads.
+/// Units are numbered along their chain, starting at the host: each unit blocks the group's
+/// messages to the units behind it until it has a number and is told to unblock them. Functions
+/// return a clause that describes a failure; empty on success. Not thread-safe.
 class Discovery {
  public:
-  /// @param socket open, outlives this.
+  /// @param socket is open, and outlives this.
   Discovery(UdpSocket& socket, const UdpAddress& group) : socket_(socket), group_(group) {}
 
-  /// Takes all units' numbers back and numbers them anew.
+  /// Resets the numbers of all units and numbers them again.
   std::string number(std::vector<Unit>& units, const std::stop_token& stop);
-  /// Starts the common clock and waits until all units keep it.
+  /// Starts the common clock and waits until all units are synchronised to it.
   std::string start_clock(std::vector<Unit>& units, const std::stop_token& stop);
-  /// Asks who is there, and changes nothing. Units behind one that has no number do not hear it.
+  /// Lists the units that answer, without changing anything. Units behind an unnumbered one are not
+  /// reached.
   std::vector<Unit> who_is_there(UdpSocket::Clock::duration patience);
-  /// Version that an answer of another wire version had; 0 if there was no such answer.
+  /// Wire version of an answer in another version than ours; 0 if there was none.
   int other_version() const { return other_version_; }
 
  private:
@@ -47,7 +48,7 @@ class Discovery {
     UdpAddress from;
     std::uint8_t status = kOk;
     UnitInfo info;
-    bool link = false;  // to a unit downstream
+    bool link = false;  // whether a cable leads to a unit downstream
   };
 
   void ask(const UdpAddress& to, Datagram& d, Kind kind);

@@ -10,22 +10,22 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
-constexpr int kMostTries = 4;           // until the sequence begins anew
+constexpr int kMostTries = 4;           // until the sequence is reset
 constexpr milliseconds kHurry{2};       // between two bursts that are sent again early
 constexpr milliseconds kNap{1};         // while waiting for room
-constexpr milliseconds kStall{20};      // without listening, in which nobody can be heard
-constexpr milliseconds kPatience{250};  // for a unit that answers to execute something
-constexpr milliseconds kKnown{90};      // for units that know their numbers to answer
+constexpr milliseconds kStall{20};      // pause of our own thread after which units are not blamed
+constexpr milliseconds kPatience{250};  // for a unit that answers to execute a frame
+constexpr milliseconds kKnown{90};      // for units that have numbers to answer
 constexpr milliseconds kProbe{50};
 constexpr milliseconds kHalfSecond{500};
-constexpr std::chrono::seconds kAlone{1};  // that a clock may run alone
+constexpr std::chrono::seconds kAlone{1};  // that a clock may run without synchronisation
 constexpr int kFirstBeats = 3, kMostBeats = 30;
 
 std::int64_t count_of(UdpSocket::Clock::time_point time) {
   return std::chrono::duration_cast<nanoseconds>(time.time_since_epoch()).count();
 }
 
-/// Time for an acknowledgement, longer after each try, so that a slow link is not crowded.
+/// Timeout of an acknowledgement, longer after each try, so as not to congest a slow link.
 milliseconds patience(int tries) {
   return Session::kAckTime * (1 << std::min(tries, 2));
 }
@@ -72,7 +72,7 @@ bool Session::open(const std::stop_token& stop) {
   return resume();
 }
 
-bool Session::hears_units() {
+bool Session::units_answer() {
   return !Discovery(socket_, group_).who_is_there(kProbe).empty();
 }
 
@@ -99,7 +99,7 @@ bool Session::resume() {
   return is_open_;
 }
 
-/// Makes the units forget what they played, and sets their failsafe.
+/// Clears the units, and sets their failsafe.
 bool Session::prepare() {
   const auto simply = [&](Command command) {
     return post_all([&](Datagram& d) { frame(d, command); }) && finish();
@@ -113,7 +113,7 @@ bool Session::prepare() {
     return false;
   for (int beats = 0; beats < kFirstBeats || best_.trip == Clock::duration::max(); ++beats) {
     if (!listen(Clock::now() + kHeartbeat)) return false;
-    if (beats == kMostBeats) return fail("loses all heartbeats; look after the network");
+    if (beats == kMostBeats) return fail("loses all heartbeats; check the network");
   }
   return read_state();
 }
@@ -161,8 +161,8 @@ bool Session::read_state() noexcept {
 }
 
 bool Session::activate(int bank) noexcept {
-  // a unit executes frames in sequence, so the bank is whole by then; but two forms to choose from
-  // must not be confused with what came before
+  // a unit executes frames in sequence, so the bank is complete by then; but while the form of the
+  // command is unknown, an earlier frame's refusal must not be taken for its own
   if (!margin_known_ && !finish()) return false;
   for (int form = 0; form < 2; ++form) {
     refusal_ = kNoError;
@@ -178,7 +178,7 @@ bool Session::activate(int bank) noexcept {
 }
 
 double Session::measure() {
-  constexpr int kMeasured = 28, kRounds = 3;  // frames, and how often
+  constexpr int kMeasured = 28, kRounds = 3;  // frames per round, and rounds
   const std::vector<SlotWord> silent(kFociPerFrame);
   double best = 0.0;
   for (int round = 0; round < kRounds; ++round) {
@@ -202,7 +202,7 @@ bool Session::release_failsafe() noexcept {
          refusal_ == kNoError;
 }
 
-/// Listens until something comes or a time, and sends what is due.
+/// Receives until an answer arrives or until a time, then sends the messages that are due.
 bool Session::step(Clock::time_point until) noexcept {
   if (failed_) return false;
   Clock::time_point now = Clock::now();
@@ -210,7 +210,7 @@ bool Session::step(Clock::time_point until) noexcept {
     for (Peer& peer : peers_) peer.heard = peer.done_at = now;
   UdpAddress from;
   Clock::time_point end = std::min(until, next_due());
-  // all that has come is heard before anything counts as late
+  // process all received answers before anything counts as late
   while (const std::size_t size = socket_.receive(in_, from, end)) {
     const std::optional<Reply> reply = read_reply({in_.data(), size});
     now = Clock::now();
@@ -219,7 +219,7 @@ bool Session::step(Clock::time_point until) noexcept {
     end = now;
   }
   stepped_ = Clock::now();
-  do_what_is_due(stepped_);
+  service_peers(stepped_);
   return !failed_;
 }
 
@@ -234,7 +234,7 @@ Session::Clock::time_point Session::next_due() const {
   return due;
 }
 
-void Session::do_what_is_due(Clock::time_point now) noexcept {
+void Session::service_peers(Clock::time_point now) noexcept {
   if (now - best_since_ > kHalfSecond && best_.trip != Clock::duration::max()) {
     last_best_ = best_;
     best_ = {};
@@ -243,12 +243,12 @@ void Session::do_what_is_due(Clock::time_point now) noexcept {
   for (Peer& peer : peers_) {
     if (now - peer.heard > kLost) {
       lose(static_cast<std::size_t>(&peer - peers_.data()),
-           "was silent for 100 ms; look after its power and its cable");
+           "was silent for 100 ms; check its power and its cable");
       return;
     }
     if ((peer.count > 0 || peer.reset != 0) && now - peer.done_at > kPatience) {
       lose(static_cast<std::size_t>(&peer - peers_.data()),
-           "answers, but does not do what it is told; switch it off and on");
+           "answers, but does not execute frames; switch it off and on");
       return;
     }
     if (now - peer.beat_at >= kHeartbeat) {
@@ -270,7 +270,7 @@ void Session::do_what_is_due(Clock::time_point now) noexcept {
   }
 }
 
-/// Sends all frames under way again, from the oldest on: a unit executes them in sequence only.
+/// Resends all frames in flight, from the oldest on: a unit executes them only in sequence.
 void Session::send_again(Peer& peer, Clock::time_point now) noexcept {
   peer.resent = now;
   for (std::size_t i = 0; i < peer.count; ++i) {
@@ -283,11 +283,11 @@ void Session::send_again(Peer& peer, Clock::time_point now) noexcept {
   }
 }
 
-/// Makes a unit begin its sequence anew.
+/// Makes a unit restart its sequence.
 void Session::reset(Peer& peer, Clock::time_point now) noexcept {
   Datagram d;
   frame(d, Command::Reset);
-  // the same number again, so that a slow answer to the first is known
+  // keep the id, so that a slow answer to the first Reset is recognised
   if (peer.reset == 0) peer.reset = ++id_ == 0 ? ++id_ : id_;
   d.renumber(peer.reset, 0);
   peer.reset_at = now;
@@ -309,7 +309,7 @@ void Session::hear(const Reply& reply, const UdpAddress& from, Clock::time_point
   acknowledge(*peer, reply, *answer, now);
 }
 
-/// Sees whether a unit is still numbered and keeps the common time.
+/// Checks that a unit still has its number and is synchronised.
 void Session::watch(std::size_t unit, const FrameReply& answer, Clock::time_point now) noexcept {
   Peer& peer = peers_[unit];
   if (answer.unit != unit || (answer.flags & kAssigned) == 0) {
@@ -321,7 +321,7 @@ void Session::watch(std::size_t unit, const FrameReply& answer, Clock::time_poin
   } else if (peer.alone == Clock::time_point()) {
     peer.alone = now;
   } else if (now - peer.alone > kAlone) {
-    lose(unit, "has not kept the common time for 1 s; look after its cable");
+    lose(unit, "has not kept the common time for 1 s; check its cable");
   }
 }
 
@@ -342,7 +342,7 @@ Session::Clock::time_point Session::host_time(std::int64_t unit) const {
   return Clock::time_point(std::chrono::duration_cast<Clock::duration>(nanoseconds(unit - offset)));
 }
 
-/// Takes frames off that a unit has executed, up to the one that it acknowledges.
+/// Removes the frames that a unit has executed, up to the one that it acknowledges.
 void Session::acknowledge(Peer& peer, const Reply& reply, const FrameReply& answer,
                           Clock::time_point now) noexcept {
   if (peer.reset != 0) {
@@ -363,13 +363,13 @@ void Session::acknowledge(Peer& peer, const Reply& reply, const FrameReply& answ
     peer.tries = 0;
     return;
   }
-  // a frame that was heard but not executed: the unit lacks an earlier one
+  // a frame that was received but not executed: the unit lacks an earlier one
   for (std::size_t i = 1; i < peer.count; ++i)
     if (reply.kind == Kind::Frame && reply.id == peer.sent(i).id && now - peer.resent > kHurry)
       send_again(peer, now);
 }
 
-/// Takes the outcome of a frame.
+/// Handles the result of a frame.
 void Session::take(Peer& peer, Command command, const FrameReply& answer) noexcept {
   if (answer.error == kNoError) {
     if (command == Command::ReadFpgaState && !answer.data.empty()) peer.state = answer.data[0];

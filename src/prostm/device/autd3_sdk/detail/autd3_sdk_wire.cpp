@@ -9,7 +9,7 @@ constexpr int kWordsPerFocus = 4, kBytesPerFocus = 8;  // words of 16 bit
 constexpr unsigned kOnce = 0;                          // repetitions of a pattern
 constexpr unsigned kSyncIdx = 0;                       // transition
 constexpr unsigned kStrict = 2;
-constexpr unsigned kRate = 256;  // of the silencer's other mode, its default
+constexpr unsigned kRate = 256;  // default of the silencer's other mode
 
 }  // namespace
 
@@ -82,27 +82,27 @@ void silencer(Datagram& d, int steps) {
 
 void cpu_config(Datagram& d, int failsafe_ms) {
   frame(d, Command::SetCpuConfig);
-  d.u32(10'000'000);     // margin of a transition at a time [ns]
+  d.u32(10'000'000);     // margin of a transition at a given time [ns]
   d.u32(1'000'000);      // polls for an update
   d.u32(2'000'000'000);  // polls for the flash
   d.u32(250'000);        // guard of the synchronisation [ns]
   d.u16(100);            // delay of an update [ms]
-  d.u16(8);              // the clocks' synchronisation, from here on: interval [ms]
-  d.u16(3);              // patience for a time stamp [ms]
-  d.u16(6);              // patience for a delay's answer [ms]
+  d.u16(8);              // from here on, clock synchronisation: interval [ms]
+  d.u16(3);              // timeout of a time stamp [ms]
+  d.u16(6);              // timeout of a delay response [ms]
   d.u16(1000);           // holdover [ms]
   d.u16(64);             // samples until locked
-  d.u32(10'000);         // offset that is stepped [ns]
+  d.u32(10'000);         // offset above which the clock is stepped [ns]
   d.u32(100);            // offset that counts as locked [ns]
   d.u32(50);             // controller, proportional [1/1000]
   d.u32(1);              // controller, integral [1/1000]
   d.u32(500'000);        // largest correction [ppb]
   d.u16(static_cast<unsigned>(failsafe_ms));
-  d.u16(32);  // synchronisations per question for the delay
+  d.u16(32);  // synchronisations per delay request
   d.u16(5);   // filter of the delay
   d.u16(48);  // pause [quanta]
   d.u16(64);  // pause [synchronisations]
-  d.u16(8);   // time until a pause is tried again [ms]
+  d.u16(8);   // time until a pause is retried [ms]
   d.u16(0);   // failsafe for a clock that is not locked: off
   d.u16(3);   // wait of the bus [cycles]
 }

@@ -11,7 +11,7 @@
 namespace prostm::sdk {
 
 inline constexpr std::uint16_t kPort = 44336;
-inline constexpr std::size_t kMostDatagram = 1452;  ///< [byte], header, sequence and command too
+inline constexpr std::size_t kMostDatagram = 1452;  ///< [byte], with header, sequence and command
 inline constexpr int kFociPerFrame = 179;
 
 enum class Command : std::uint8_t {
@@ -29,7 +29,7 @@ enum class Command : std::uint8_t {
   ReadFirmwareInfo = 0xEB
 };
 
-/// A datagram under construction. What does not fit is left out.
+/// A datagram under construction. Bytes that do not fit are dropped.
 class Datagram {
  public:
   void u8(unsigned value) {
@@ -42,7 +42,7 @@ class Datagram {
   }
   std::span<const std::uint8_t> bytes() const { return {bytes_.data(), size_}; }
   Command command() const { return static_cast<Command>(bytes_[5]); }  ///< @pre a frame
-  /// Numbers it anew. @pre a frame
+  /// Sets id and sequence. @pre a frame
   void renumber(std::uint16_t id, std::uint8_t sequence);
 
  private:
@@ -51,31 +51,32 @@ class Datagram {
   std::size_t size_ = 0;
 };
 
-/// Writes the header. @param id comes back with the answer.
+/// Writes the header. @param id is returned with the answer.
 void begin(Datagram& d, Kind kind, std::uint16_t id);
 void assign_id(Datagram& d, std::uint16_t id, std::uint8_t unit, bool grandmaster);
 void set_time(Datagram& d, std::uint16_t id, std::uint64_t nanoseconds);
 
-/// A frame without a payload. Its number and sequence are set by Datagram::renumber.
+/// Writes a frame without a payload. Datagram::renumber sets its id and sequence.
 void frame(Datagram& d, Command command);
-/// @param first place of the first word in the bank. @pre at most kFociPerFrame words
+/// @param first position of the first word in the bank. @pre at most kFociPerFrame words
 void write_foci(Datagram& d, int bank, int first, std::span<const SlotWord> words);
 
 struct Pattern {
   int bank = 0;
-  int divider = 4;  ///< of 40 kHz
+  int divider = 4;  ///< periods of 40 kHz per sample
   int samples = 100;
   int slots = 8;               ///< foci of a sample
   double sound_speed = 346.0;  ///< [m/s]
 };
-/// A pattern that plays once and holds its last sample.
+/// Configures a pattern that plays once and holds its last sample.
 void config_pattern(Datagram& d, const Pattern& pattern);
-/// Lets a bank take over when the common clock makes its index 0.
-/// @param margin_field whether the payload ends with a margin, as older firmware wants it
+/// Switches to a bank when the common clock makes the bank's index 0.
+/// @param margin_field whether the payload ends with a margin, as older firmware requires
 void activate(Datagram& d, int bank, bool margin_field);
-/// Completes changes of intensity and phase within `steps` periods of 40 kHz, strictly.
+/// Sets the silencer, in strict mode: changes of intensity and phase take `steps` periods of 40
+/// kHz.
 void silencer(Datagram& d, int steps);
-/// All settings of a unit's processor, at their defaults but for the failsafe.
+/// Sets all options of a unit's processor: the failsafe as given, all others to their defaults.
 void cpu_config(Datagram& d, int failsafe_ms);
 
 }  // namespace prostm::sdk

@@ -63,7 +63,7 @@ std::string UdpSocket::open(const UdpAddress& peer) {
   socket_ = ::socket(AF_INET6, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const sockaddr_in6 bound = raw(own);
   const int only_v6 = 1, scope = static_cast<int>(peer.scope), hops = 1;
-  // a block is sent at once, to several units
+  // room for a whole block for several units
   const int buffer = 1 << 20;
   const auto fails = [&] {
     if (socket_ < 0) return true;
@@ -110,7 +110,7 @@ std::size_t UdpSocket::receive(std::span<std::uint8_t> bytes, UdpAddress& from,
       from.scope = address.sin6_scope_id;
       return static_cast<std::size_t>(got);
     }
-    // an error that came from an earlier datagram is taken off by reading, so go on
+    // reading clears the error of an earlier datagram, so try again
     const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(end - Clock::now());
     if (left.count() <= 0) return 0;
     pollfd waits{socket_, POLLIN, 0};

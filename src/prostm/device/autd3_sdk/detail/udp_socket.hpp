@@ -1,5 +1,5 @@
 #pragma once
-/// A UDP socket over IPv6 whose every wait has an end.
+/// A UDP socket over IPv6 with a timeout on every wait.
 
 #include <array>
 #include <chrono>
@@ -14,13 +14,12 @@ struct UdpAddress {
   std::uint16_t port = 0;
   std::uint32_t scope = 0;  ///< number of the interface, for link-local addresses
 
-  /// Whether both are the same end; the scope is left out, since replies need not tell it.
+  /// Whether host and port are equal; the scope is ignored, since replies need not report it.
   bool same_end(const UdpAddress& other) const { return host == other.host && port == other.port; }
   bool is_multicast() const { return host[0] == 0xFF; }
 };
 
-/// The socket of a client. Nothing but open() allocates, and nothing throws. Not for several
-/// threads.
+/// The socket of a client. Only open() allocates, and nothing throws. Not thread-safe.
 class UdpSocket {
  public:
   using Clock = std::chrono::steady_clock;
@@ -31,14 +30,15 @@ class UdpSocket {
   UdpSocket& operator=(const UdpSocket&) = delete;
 
   /// Binds to the address from which `peer` is reached: loopback for a peer on loopback, else the
-  /// link-local address of the peer's interface. @return in a few words why it cannot, else empty.
+  /// link-local address of the peer's interface. @return the reason of a failure in a few words;
+  /// empty on success.
   std::string open(const UdpAddress& peer);
   void close() noexcept;
   bool is_open() const { return socket_ >= 0; }
 
-  /// Hands a datagram over without waiting; false if the system does not take it.
+  /// Sends a datagram without waiting; false if the system does not accept it.
   bool send(const UdpAddress& to, std::span<const std::uint8_t> bytes) noexcept;
-  /// Waits for a datagram until `end`. @return its size, cut to that of `bytes`; 0 if there was
+  /// Waits for a datagram until `end`. @return its size, at most that of `bytes`; 0 if there was
   /// none.
   std::size_t receive(std::span<std::uint8_t> bytes, UdpAddress& from,
                       Clock::time_point end) noexcept;

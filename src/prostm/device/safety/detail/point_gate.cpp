@@ -6,7 +6,7 @@
 namespace prostm {
 namespace {
 
-// A point that sounds counts as this much stronger, so that equals do not take turns.
+// Hysteresis: an active point counts as this much stronger, so that equals do not take turns.
 constexpr float kStays = 1.5F;
 
 bool is_finite(const FocusSample& s) {
@@ -39,7 +39,7 @@ PointGate::Waiting& PointGate::waiting(std::size_t focus, std::size_t back) {
   return line_[(newest_ + length - back) % length * foci_ + focus];
 }
 
-/// Puts a point's newest sample into the line, and refuses it by itself: `refused_`.
+/// Adds a point's newest sample to the line; marks it in `refused_` if it is not finite.
 void PointGate::take(std::size_t focus, const FocusSample& given) {
   const FocusSample& before = waiting(focus, 1).sample;
   FocusSample& now = waiting(focus, 0).sample;
@@ -52,13 +52,13 @@ void PointGate::take(std::size_t focus, const FocusSample& given) {
   refused_[focus] = 0;
 }
 
-/// Refuses the points of the newest sample that are too close to a stronger one.
+/// Marks the points of the newest sample that are too close to a stronger one.
 void PointGate::choose() {
   const auto strength = [this](std::size_t f) {
     if (refused_[f] != 0) return 0.0F;
     return waiting(f, 0).sample.intensity * (sounds_[f] != 0 ? kStays : 1.0F);
   };
-  // insertion keeps the order of equals, and needs no memory
+  // insertion sort keeps the order of equals and needs no memory
   for (std::size_t f = 0; f < foci_; ++f) {
     std::size_t at = f;
     for (; at > 0 && strength(order_[at - 1]) < strength(f); --at) order_[at] = order_[at - 1];

@@ -1,5 +1,5 @@
 #pragma once
-/// Silences focal points where they come too close.
+/// Silences focal points that come too close to each other.
 
 #include <cstdint>
 #include <span>
@@ -9,26 +9,26 @@
 
 namespace prostm {
 
-/// Where sounding focal points come closer than a least separation, only the strongest of them goes
-/// on sounding; a sample that is not finite is silent. Around such samples the point fades out and
-/// in again: the gate looks ahead by the time of a fade, and samples leave that much later.
-/// Positions never change. An intensity changes by at most its own change and a step of the fade.
-/// Points of intensity 0 may lie anywhere.
+/// Where active focal points come closer than a minimum separation, only the strongest of them
+/// stays on. A sample that is not finite is silent. The point fades out before such samples and in
+/// again after them: the gate looks ahead by the duration of a fade, and delays samples by as much.
+/// Positions never change. An intensity changes by at most its own change plus a step of the fade.
+/// Points of intensity 0 may be anywhere.
 class PointGate {
  public:
   struct Bounds {
-    double least_separation = 0.0;  ///< of two sounding points [m]; 0 or less: any
+    double least_separation = 0.0;  ///< of two active points [m]; 0 or less: no limit
     int fade = 1;                   ///< samples of a fade over the full range, >= 1
   };
 
-  /// Forgets all samples. Allocates.
+  /// Discards all samples. Allocates.
   void configure(int foci, const Bounds& bounds);
-  /// Samples from one that is given to step() to the same one leaving it: the fade's.
+  /// Delay of step() in samples: the length of a fade.
   int delay() const { return delay_; }
-  /// Takes a sample and gives the one that came delay() samples before, silent at first; `in` and
-  /// `out` hold one sample each and may be the same.
+  /// Takes a sample and returns the one taken delay() samples before; the first ones are silent.
+  /// `in` and `out` hold one sample each and may be the same.
   void step(std::span<const FocusSample> in, std::span<FocusSample> out) noexcept;
-  /// Samples of a focal point that were silenced or weakened, since configure().
+  /// Samples of a focal point that were silenced or attenuated since configure().
   std::int64_t weakened() const { return weakened_; }
 
  private:

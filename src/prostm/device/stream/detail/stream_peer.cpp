@@ -54,7 +54,7 @@ void Peer::close() {
 }
 
 bool Peer::read() {
-  if (unread_ == in_.size()) return true;  // what is there is looked at first
+  if (unread_ == in_.size()) return true;  // process the buffered bytes first
   const auto got =
       recv(connection_.get(), in_.data() + unread_, in_.size() - unread_, MSG_DONTWAIT);
   if (got > 0) unread_ += static_cast<std::size_t>(got);
@@ -75,12 +75,12 @@ bool Peer::flush() {
     head_ += static_cast<std::size_t>(sent);
   }
   head_ = tail_ = 0;
-  // the receiver reads its last message, and then the end
+  // after its last message the receiver reads the end of the connection
   if (state_ == State::Closing) shutdown(connection_.get(), SHUT_WR);
   return true;
 }
 
-/// Room for a message; empty if more than `most` bytes would wait then, a first message excepted.
+/// Returns room for a message; empty if the queue, unless it is empty, would exceed `most` bytes.
 std::span<std::uint8_t> Peer::room(std::size_t bytes, std::size_t most) {
   if (has_waiting() && tail_ - head_ + bytes > most) return {};
   if (tail_ + bytes > out_.size()) {
@@ -91,7 +91,7 @@ std::span<std::uint8_t> Peer::room(std::size_t bytes, std::size_t most) {
   return std::span(out_).subspan(tail_, bytes);
 }
 
-/// Sends what was written into room(): UDP at once, TCP behind what waits.
+/// Sends the message written into room(): UDP at once, TCP after the queued messages.
 bool Peer::commit(std::size_t bytes, Clock::time_point now) {
   if (!is_tcp()) {
     if (!send_to(*udp_, std::span(out_).subspan(tail_, bytes), address_)) return false;

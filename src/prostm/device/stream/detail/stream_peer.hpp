@@ -29,15 +29,14 @@ struct PlayedLoop {
   BlockView view() const { return {0, 0, sample_rate, foci, samples}; }
 };
 
-/// Used by the server's thread alone. Its buffers are made once; sending allocates nothing and
-/// never waits.
+/// Used by the server's thread only. Buffers are allocated once; sending never allocates or blocks.
 class Peer {
  public:
   enum class State : std::uint8_t {
     Free,
-    Greeting,  ///< connected, and has not subscribed yet
+    Greeting,  ///< connected, but not subscribed yet
     Subscribed,
-    Closing  ///< is still sent what waits, and then closed
+    Closing  ///< closed once its queued messages are sent
   };
 
   Peer();
@@ -45,7 +44,7 @@ class Peer {
   void open_tcp(Descriptor&& connection, Clock::time_point now);
   void open_udp(const Descriptor& socket, const Address& address, Clock::time_point now);
   void subscribe(const Wishes& wishes, Clock::time_point now);
-  /// Sends END or ERROR, then closes: UDP at once, TCP when it is sent or after a while.
+  /// Sends END or ERROR, then closes: UDP at once, TCP once it is sent or after a timeout.
   void end(std::uint32_t session, Kind kind, Reason reason, Clock::time_point now);
   void close();
 
@@ -61,32 +60,32 @@ class Peer {
   Clock::time_point sent() const { return sent_; }
   void hear(Clock::time_point now) { heard_ = now; }
 
-  /// Reads what has arrived into a buffer; false when the connection is closed.
+  /// Reads arrived bytes into a buffer; false when the connection is closed.
   bool read();
-  /// Unread bytes of the receiver.
+  /// Bytes from the receiver that are not processed yet.
   std::span<const std::uint8_t> unread() const { return std::span(in_).first(unread_); }
   void drop_read(std::size_t bytes);
-  /// Sends what waits, as far as there is room; false when the connection is broken.
+  /// Sends queued bytes, as far as the socket accepts them; false when the connection is broken.
   bool flush();
 
-  /// Sends a block, in datagrams that each hold a part of it. A block that finds no room is skipped
-  /// and counted. @return whether it was sent.
+  /// Sends a block; over UDP, in datagrams with a part of it each. If the buffer is full, the block
+  /// is skipped and counted. @return whether it was sent.
   bool send_block(std::uint32_t session, const BlockView& block, Clock::time_point now);
-  /// Counts samples that are left out before the next block.
+  /// Counts samples that are skipped before the next block.
   void skip(std::int64_t samples) {
     skipped_ += samples;
     gap_ = true;
   }
-  /// Sends the next parts of a loop while there is room.
+  /// Sends the next parts of a loop, as far as the buffer has room.
   void send_loop(std::uint32_t session, const std::shared_ptr<const PlayedLoop>& loop,
                  Clock::time_point now);
   bool has_whole(const PlayedLoop& loop) const {
     return loop_id_ == loop.id && loop_sent_ == loop.view().count();
   }
-  std::uint32_t started_loop = 0;  ///< id of the loop whose start it was told
+  std::uint32_t started_loop = 0;  ///< id of the loop whose LOOP_START was sent
 
-  /// Sends a short message. @param put writes it, given a span and an envelope, and returns its
-  /// size. @return false if there was no room.
+  /// Sends a short message. @param put writes the message, given a span and an envelope, and
+  /// returns its size. @return false if the buffer is full.
   template <class Put>
   bool send(std::uint32_t session, Clock::time_point now, Put&& put) {
     const std::span<std::uint8_t> out = room(kDatagramBytes, kWaitingMost);
@@ -95,8 +94,8 @@ class Peer {
   }
 
  private:
-  static constexpr std::size_t kBlocksMost = 256 << 10;   // bytes that may wait, of blocks: 100 ms
-  static constexpr std::size_t kWaitingMost = 272 << 10;  // and of all messages
+  static constexpr std::size_t kBlocksMost = 256 << 10;   // bytes of blocks in the queue: 100 ms
+  static constexpr std::size_t kWaitingMost = 272 << 10;  // bytes of all messages in it
   static constexpr std::size_t kLoopPart = 1024;          // focal points of a LOOP
 
   std::span<std::uint8_t> room(std::size_t bytes, std::size_t most);
@@ -113,7 +112,7 @@ class Peer {
   std::array<std::uint8_t, 4 * kLongestRequest> in_{};
   std::size_t unread_ = 0;
   std::vector<std::uint8_t> out_;
-  std::size_t head_ = 0, tail_ = 0;  // bytes of out_ that wait
+  std::size_t head_ = 0, tail_ = 0;  // queued bytes of out_
 
   std::int64_t skipped_ = 0;  // samples
   bool gap_ = false;

@@ -11,19 +11,19 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kExpiry{1000};  // of a receiver that is not heard
-constexpr milliseconds kHeartbeat{5};  // longest silence towards a subscriber
-constexpr milliseconds kClosing{500};  // in which a receiver reads its last message
-constexpr milliseconds kFinish{100};   // for the last messages of all
+constexpr milliseconds kExpiry{1000};  // after the last message of a receiver
+constexpr milliseconds kHeartbeat{5};  // longest time without a message to a subscriber
+constexpr milliseconds kClosing{500};  // for a receiver to read its last message
+constexpr milliseconds kFinish{100};   // for all receivers to read their last messages
 constexpr int kSilentAfter = 4000;     // samples with intensity 0: 100 ms
 constexpr int kDatagramsAtOnce = 64;
-constexpr int kErrorsASecond = 20;  // over UDP, where anybody can make us answer
+constexpr int kErrorsASecond = 20;  // over UDP, where senders' addresses may be forged
 constexpr int kWait_ms = 5;
 
-/// A ring whose blocks have room for the largest.
+/// Makes a ring with room for the largest block in each slot.
 std::unique_ptr<SpscRing<BlockRecord>> make_ring(std::size_t blocks, const StreamSettings& s) {
   auto ring = std::make_unique<SpscRing<BlockRecord>>(blocks);
-  for (std::size_t i = 0; i <= blocks; ++i) {  // its slots are one more
+  for (std::size_t i = 0; i <= blocks; ++i) {  // it has one more slot
     ring->back()->focus.resize(static_cast<std::size_t>(s.block_samples * s.max_foci));
     ring->commit();
     ring->pop();
@@ -57,7 +57,7 @@ StreamStats StreamServer::stats() const {
 void StreamServer::send() {
   ring_->commit();
   const std::uint64_t one = 1;
-  // a counter that is full wakes as well
+  // a full counter wakes the server as well
   [[maybe_unused]] const auto written = write(wake_.get(), &one, sizeof(one));
 }
 
@@ -82,12 +82,12 @@ void StreamServer::run(const std::stop_token& stop) {
     }
     take_blocks(now);
     send_loops(now);
-    care(Clock::now());
+    maintain_peers(Clock::now());
   }
   finish();
 }
 
-/// Waits until there is something to do, or a heartbeat may be due.
+/// Waits for data, or until a heartbeat may be due.
 void StreamServer::wait() {
   std::size_t n = 0;
   const auto watch = [&](int fd, short events) {
@@ -111,7 +111,7 @@ void StreamServer::accept(Clock::time_point now) {
     Descriptor connection = accept_connection(sockets_.tcp);
     if (!connection) return;
     Peer* peer = free_peer();
-    if (peer == nullptr) {  // most are connected and have not subscribed yet
+    if (peer == nullptr) {  // too many connections without a subscription
       count_.refused.fetch_add(1, std::memory_order_relaxed);
       continue;
     }
@@ -138,8 +138,8 @@ void StreamServer::take_datagrams(Clock::time_point now) {
   }
 }
 
-/// Answers a datagram. One without the magic word is not answered, nor is the message of a server:
-/// two servers must not talk to each other without end.
+/// Answers a datagram. Ignores datagrams without the magic word, and messages from a server: two
+/// servers must not answer each other forever.
 void StreamServer::take_datagram(std::span<const std::uint8_t> bytes, const Address& from,
                                  Clock::time_point now) {
   const Reading reading = read_request(bytes);
@@ -183,7 +183,7 @@ void StreamServer::refuse_datagram(const Address& to, Reason reason, Clock::time
   send_to(sockets_.udp, std::span(scratch_).first(n), to);
 }
 
-/// Reads a connection and does as its messages ask.
+/// Reads a connection and handles its messages.
 void StreamServer::take_bytes(Peer& peer, Clock::time_point now) {
   const bool open = peer.read();
   while (peer.state() != Peer::State::Closing && !peer.unread().empty()) {
@@ -201,7 +201,7 @@ void StreamServer::take_bytes(Peer& peer, Clock::time_point now) {
   if (!open || !peer.flush()) peer.close();
 }
 
-/// Does as a receiver asks; false if that ended the connection.
+/// Handles a request; false if that ended the connection.
 bool StreamServer::take_request(Peer& peer, const Request& request, Clock::time_point now) {
   if (request.kind == Kind::Subscribe) {
     if (!peer.is_subscribed() && subscribers() >= kMostSubscribers) {
@@ -221,8 +221,8 @@ bool StreamServer::take_request(Peer& peer, const Request& request, Clock::time_
     peer.end(session_, Kind::Error, Reason::NotSubscribed, now);
     return false;
   }
-  if (peer.is_tcp()) peer.hear(now);  // UDP is renewed by SUBSCRIBE, which has the token
-  const std::int64_t received = to_ns(Clock::now());  // `now` is of the whole round
+  if (peer.is_tcp()) peer.hear(now);  // over UDP only SUBSCRIBE renews, since it carries the token
+  const std::int64_t received = to_ns(Clock::now());  // `now` is older: one for all requests
   peer.send(session_, now, [&](auto out, const Envelope& e) {
     return put_time(out, e, request.time_ns, received, to_ns(Clock::now()));
   });
@@ -236,7 +236,7 @@ void StreamServer::subscribe(Peer& peer, const Request& request, Clock::time_poi
   peer.send(session_, now, [&](auto out, const Envelope& e) {
     return put_hello(out, e, hello(true, token, request.wishes));
   });
-  if (is_new) tell_state(peer, now);
+  if (is_new) send_state(peer, now);
 }
 
 Hello StreamServer::hello(bool subscribed, std::uint32_t token, const Wishes& wishes) const {
@@ -276,7 +276,7 @@ void StreamServer::take_block(BlockRecord& record, Clock::time_point now) {
   loop_first_ = record.loop_first;
   loop_play_ns_ = record.loop_play_ns;
 
-  // tell what changes before the block that has it
+  // report changes before the block to which they apply
   const bool zero = std::all_of(block.samples.begin(), block.samples.end(),
                                 [](const FocusSample& s) { return s.intensity == 0.0F; });
   silent_samples_ = zero ? std::min(silent_samples_ + record.samples, kSilentAfter) : 0;
@@ -309,21 +309,21 @@ void StreamServer::set_state(PlayState state, Reason reason, std::int64_t sample
   reason_ = reason;
   state_sample_ = sample;
   for (Peer& peer : peers_) {
-    if (peer.is_subscribed()) tell_state(peer, now);
+    if (peer.is_subscribed()) send_state(peer, now);
   }
 }
 
-void StreamServer::tell_state(Peer& peer, Clock::time_point now) {
+void StreamServer::send_state(Peer& peer, Clock::time_point now) {
   const bool no_loop = peer.wishes().loops && playing_loop_ == 0 && state_ != PlayState::Stopped;
   const bool told = peer.send(session_, now, [&](auto out, const Envelope& e) {
     return no_loop ? put_state(out, e, PlayState::Stopped, Reason::NoLoop, state_sample_)
                    : put_state(out, e, state_, reason_, state_sample_);
   });
-  // a receiver that does not know the state must not go on, unless a datagram was lost
+  // over TCP, a receiver that missed a state must not continue
   if (!told && peer.is_tcp()) peer.close();
 }
 
-/// Sends the loop, and when it began, to those who asked for loops.
+/// Sends the loop, and the time when it began, to subscribers of loops.
 void StreamServer::send_loops(Clock::time_point now) {
   {
     const std::unique_lock lock(loop_mutex_, std::try_to_lock);
@@ -343,8 +343,8 @@ void StreamServer::send_loops(Clock::time_point now) {
   }
 }
 
-/// Sends heartbeats, and ends those who were not heard for long.
-void StreamServer::care(Clock::time_point now) {
+/// Sends heartbeats, and ends the subscriptions of silent receivers.
+void StreamServer::maintain_peers(Clock::time_point now) {
   for (Peer& peer : peers_) {
     if (peer.is_free()) continue;
     const auto quiet = now - peer.heard();
@@ -363,7 +363,7 @@ void StreamServer::care(Clock::time_point now) {
   count_.subscribers.store(subscribers(), std::memory_order_relaxed);
 }
 
-/// Says END to all, and waits a little for those who have not read it.
+/// Sends END to all receivers, and waits a little for those that have not read it.
 void StreamServer::finish() {
   const auto end = Clock::now() + kFinish;
   for (Peer& peer : peers_) {

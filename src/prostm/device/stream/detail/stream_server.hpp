@@ -18,14 +18,14 @@ namespace prostm::stream {
 
 inline constexpr int kMostSubscribers = 8;
 
-/// A block on its way from the thread that fills it to the one that sends it.
+/// A block passed from the thread that fills it to the thread that sends it.
 struct BlockRecord {
   std::int64_t first = 0, play_ns = 0;
-  std::int64_t missed = 0;        ///< block times without a block, since the start
-  std::uint32_t loop = 0;         ///< id of the loop that plays at the block's end; 0: a stream
+  std::int64_t missed = 0;        ///< missed blocks since the start
+  std::uint32_t loop = 0;         ///< id of the loop playing at the block's end; 0: a stream
   std::int64_t loop_first = 0;    ///< sample at which it began
   std::int64_t loop_play_ns = 0;  ///< play time of that sample
-  std::int64_t unsent = 0;  ///< samples of blocks that found no room before it, since the start
+  std::int64_t unsent = 0;  ///< samples of earlier blocks dropped from a full ring, since the start
   int samples = 0, foci = 1;
   std::vector<FocusSample> focus;  ///< has room for the largest block
 
@@ -34,8 +34,9 @@ struct BlockRecord {
   }
 };
 
-/// Has a thread of its own, which holds the sockets and waits for nobody: what does not fit into a
-/// subscriber's buffer is left out and counted. After construction neither thread allocates.
+/// Has a thread of its own, which owns the sockets and never waits for a subscriber: blocks that do
+/// not fit into a subscriber's buffer are dropped and counted. After construction neither thread
+/// allocates.
 class StreamServer {
  public:
   /// @throws std::invalid_argument if it cannot listen there.
@@ -45,15 +46,14 @@ class StreamServer {
   std::uint16_t port() const { return sockets_.port; }
   StreamStats stats() const;
 
-  /// Room for the next block; null if none is free, because the other thread did not run for long.
-  /// The device's thread.
+  /// Room for the next block; null if the ring is full, because the server's thread did not run for
+  /// long. Called by the device's thread.
   BlockRecord* draft() { return ring_->back(); }
-  /// Sends the draft. The device's thread.
+  /// Sends the draft. Called by the device's thread.
   void send();
-  /// The device's thread starts, or has ended.
+  /// Call it when the device's thread starts or has ended.
   void set_running(bool running);
-  /// The loop that the device will repeat from the moment when a block's record says so. Any
-  /// thread.
+  /// Sets the loop that the device repeats once the record of a block names it. Any thread.
   void set_loop(std::shared_ptr<const PlayedLoop> loop);
 
  private:
@@ -73,9 +73,9 @@ class StreamServer {
   void take_blocks(Clock::time_point now);
   void take_block(BlockRecord& record, Clock::time_point now);
   void set_state(PlayState state, Reason reason, std::int64_t sample, Clock::time_point now);
-  void tell_state(Peer& peer, Clock::time_point now);
+  void send_state(Peer& peer, Clock::time_point now);
   void send_loops(Clock::time_point now);
-  void care(Clock::time_point now);
+  void maintain_peers(Clock::time_point now);
   void finish();
 
   Hello hello(bool subscribed, std::uint32_t token, const Wishes& wishes) const;
@@ -89,13 +89,13 @@ class StreamServer {
   const std::uint32_t session_;
   const std::uint64_t secret_;  // of the tokens
 
-  // from the device's thread
+  // written by the device's thread
   std::unique_ptr<SpscRing<BlockRecord>> ring_;
   std::atomic<bool> running_{false};
   std::mutex loop_mutex_;  // guards loop_
   std::shared_ptr<const PlayedLoop> loop_;
 
-  // of the server's thread
+  // used by the server's thread
   std::array<Peer, kPeers> peers_;
   std::array<pollfd, kPeers + 3> polled_{};
   std::array<std::uint8_t, kDatagramBytes> scratch_{};
@@ -113,7 +113,7 @@ class StreamServer {
     std::atomic<std::int64_t> skipped{0}, refused{0}, ignored{0};
     std::atomic<int> subscribers{0};
   } count_;
-  std::jthread thread_;  // the last, so that it ends first
+  std::jthread thread_;  // the last member, so that it ends first
 };
 
 }  // namespace prostm::stream

@@ -15,9 +15,9 @@ namespace prostm::stream {
 namespace {
 
 constexpr int kBacklog = 16;
-constexpr int kSendBuffer = 64 << 10;     // of a TCP connection: what waits there grows stale
+constexpr int kSendBuffer = 64 << 10;  // of a TCP connection; small, since queued data grows stale
 constexpr int kDatagramBuffer = 1 << 20;  // of all UDP subscribers
-constexpr int kTries = 16;                // for a port that is free for TCP and UDP
+constexpr int kTries = 16;                // to find a port that is free for both TCP and UDP
 
 std::invalid_argument refused(const HostPort& address, const std::string& why) {
   return std::invalid_argument("device stream://" + address.text() + " " + why);
@@ -37,7 +37,7 @@ Descriptor open_socket(const HostPort& address, std::uint16_t port, int type) {
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owner(list, freeaddrinfo);
   Descriptor fd(::socket(list->ai_family, list->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int yes = 1;
-  // a port that the last run has just left may be used again
+  // allow a port that the last run has just released
   if (type == SOCK_STREAM) setsockopt(fd.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
   if (type == SOCK_DGRAM)
     setsockopt(fd.get(), SOL_SOCKET, SO_SNDBUF, &kDatagramBuffer, sizeof(kDatagramBuffer));
@@ -137,7 +137,7 @@ std::ptrdiff_t receive(const Descriptor& udp, std::span<std::uint8_t> into, Addr
 bool send_to(const Descriptor& udp, std::span<const std::uint8_t> bytes, const Address& to) {
   const auto sent = sendto(udp.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL,
                            reinterpret_cast<const sockaddr*>(&to.storage), to.size);
-  // a receiver that is gone is no lack of room: its subscription expires
+  // an unreachable receiver does not count as a full buffer: its subscription expires
   return sent >= 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != ENOBUFS);
 }
 

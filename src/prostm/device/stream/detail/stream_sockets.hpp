@@ -37,11 +37,11 @@ struct Address {
   socklen_t size = 0;
 
   bool operator==(const Address& other) const;
-  /// A number that only the owner of `secret` can tell for it; never 0.
+  /// A number for this address that only the owner of `secret` can compute; never 0.
   std::uint32_t token(std::uint64_t secret) const;
 
  private:
-  /// The bytes that tell addresses apart.
+  /// Hash of the bytes that identify the address.
   std::uint64_t mixed(std::uint64_t seed) const;
 };
 
@@ -50,17 +50,17 @@ struct Sockets {
   std::uint16_t port = 0;
 };
 
-/// Listens without blocking. @param address of this machine, as a number, or localhost; port 0:
-/// any that is free for both. @throws std::invalid_argument with a sentence.
+/// Starts listening, without blocking. @param address of this machine, numeric, or localhost; port
+/// 0: any that is free for both. @throws std::invalid_argument with a sentence.
 Sockets open_sockets(const HostPort& address);
 
-/// Accepts a connection, ready for messages that are sent at once; none if nobody waits.
+/// Accepts a connection, with TCP_NODELAY set; empty if none is pending.
 Descriptor accept_connection(const Descriptor& listening);
 
-/// Receives a datagram. Returns its size, which may be larger than `into`; negative if none waits.
+/// Receives a datagram. Returns its size, which may exceed `into`; negative if nothing has arrived.
 std::ptrdiff_t receive(const Descriptor& udp, std::span<std::uint8_t> into, Address& from);
 
-/// Sends a datagram; false if it found no room.
+/// Sends a datagram; false if the socket's buffer is full.
 bool send_to(const Descriptor& udp, std::span<const std::uint8_t> bytes, const Address& to);
 
 }  // namespace prostm::stream

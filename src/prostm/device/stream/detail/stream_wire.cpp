@@ -23,7 +23,7 @@ class Writer {
     for (const std::uint8_t byte : kMagic) put(byte);
     put(kVersion);
     put(static_cast<std::uint8_t>(kind));
-    put(std::uint16_t{0});  // the body's size, in done()
+    put(std::uint16_t{0});  // size of the body, set by done()
     put(envelope.session);
     put(envelope.sequence);
   }
@@ -55,7 +55,8 @@ class Writer {
   std::size_t size_ = 0;
 };
 
-/// The first wished samples' place in the block, which may be behind its end.
+/// Returns the position of the first selected sample in the block; it may be beyond the block's
+/// end.
 std::size_t first_wished(const BlockView& block, const Wishes& wishes) {
   const std::int64_t over = block.first % wishes.stride;
   return static_cast<std::size_t>(over == 0 ? 0 : wishes.stride - over);
@@ -68,8 +69,8 @@ void put_samples(Writer& w, const BlockView& block, const Wishes& wishes, std::s
   const std::size_t foci = wishes.foci_of(block.foci);
   for (std::size_t k = 0; k < count; ++k) {
     const auto sample = block.samples.subspan((begin + k * stride) * all, foci);
-    // the root mean square has the power of the intensities that it stands for, so the limits that
-    // they keep hold for it too
+    // the root mean square has the same power as the intensities that it replaces, so it keeps
+    // their limits
     float power = 0.0F;
     if (wishes.shared) {
       for (const FocusSample& f : sample) power += f.intensity * f.intensity;

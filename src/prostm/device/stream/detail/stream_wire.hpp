@@ -1,5 +1,5 @@
 #pragma once
-/// The messages of prostm-stream/1 to receivers, as docs/devices/stream.md has them. Private to
+/// Messages to receivers in prostm-stream/1, as specified in docs/devices/stream.md. Private to
 /// device.
 
 #include <cstddef>
@@ -22,7 +22,7 @@ inline constexpr std::size_t kLongestMessage =
 
 enum class PlayState : std::uint8_t { Stopped = 0, Silent = 1, Playing = 2 };
 
-/// Parts of the header that are each message's own.
+/// Header fields that differ between messages.
 struct Envelope {
   std::uint32_t session = 0;
   std::uint32_t sequence = 0;
@@ -48,17 +48,17 @@ struct BlockView {
   std::size_t count() const { return samples.size() / static_cast<std::size_t>(foci); }
 };
 
-/// Number of the block's samples that the wishes ask for.
+/// Number of the block's samples that the wishes select.
 std::size_t wished_samples(const BlockView& block, const Wishes& wishes);
 
-/// Wished samples that fit in a message of so many bytes.
+/// Number of samples that fit into a message of this size [bytes].
 std::size_t samples_in(std::size_t bytes, std::size_t foci);
 
 // Each writes a message into `out` and returns its size in bytes. @pre it fits.
 std::size_t put_hello(std::span<std::uint8_t> out, const Envelope& envelope, const Hello& hello);
-/// @param begin, count the part of the wished samples.
-/// @param skipped samples that were left out for this receiver up to now. @param gap whether some
-/// were left out right before this message.
+/// @param begin, count range within the selected samples.
+/// @param skipped samples skipped for this receiver so far. @param gap whether samples were skipped
+/// right before this message.
 std::size_t put_block(std::span<std::uint8_t> out, const Envelope& envelope, const BlockView& block,
                       const Wishes& wishes, std::size_t begin, std::size_t count,
                       std::int64_t skipped, bool gap);

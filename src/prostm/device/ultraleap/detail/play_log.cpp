@@ -26,17 +26,17 @@ void PlayLog::add(const Call& call) noexcept {
   calls_.store(at + 1, std::memory_order_release);
 }
 
-/// Reads a call; false if it was overwritten meanwhile.
+/// Reads a call; false if it was overwritten during the read.
 bool PlayLog::read(std::int64_t call, Call& out) const {
   const Slot& slot = slots_[static_cast<std::size_t>(call) % kCalls];
-  // acquire, so that the count below is read after them
+  // acquire, so that the count below is read after the members
   constexpr auto kAcquire = std::memory_order_acquire;
   out = {slot.first.load(kAcquire), slot.samples.load(kAcquire), slot.play_time.load(kAcquire),
          slot.pulled.load(kAcquire), slot.time.load(kAcquire)};
   return calls_.load(kAcquire) < call + static_cast<std::int64_t>(kCalls);
 }
 
-/// Finds the newest call for which `is_it`, else the oldest that is kept; false without any.
+/// Finds the newest call for which `is_it` holds, else the oldest call; false if the log is empty.
 template <class Is>
 bool PlayLog::find(Is&& is_it, Call& out) const {
   const std::int64_t calls = this->calls();
@@ -61,7 +61,7 @@ double PlayLog::play_time(std::int64_t sample) const {
 double PlayLog::ask_time(std::int64_t sample) const {
   Call call;
   if (!find([&](const Call& c) { return c.pulled <= sample; }, call)) return 0.0;
-  // a sample that was not asked for yet, or long ago: by the sample rate
+  // a sample that was not pulled yet, or long ago: extrapolate by the sample rate
   const std::int64_t later = sample - call.pulled;
   const bool is_newest = call.pulled == newest().pulled;
   const bool inside = later >= 0 && (!is_newest || later < std::max<std::int64_t>(1, call.samples));

@@ -1,5 +1,5 @@
 #pragma once
-/// Times of a stream's samples, told by a callback and asked for by any thread.
+/// Play times of a stream's samples, recorded by a callback and readable from any thread.
 
 #include <array>
 #include <atomic>
@@ -8,30 +8,31 @@
 
 namespace prostm {
 
-/// Remembers the newest calls of a device that asks for some samples at a time. One thread adds,
-/// any thread asks; nothing locks or allocates. Times are seconds of the steady clock.
+/// Log of the newest calls of a device that requests a few samples at a time. One thread adds, any
+/// thread reads; nothing locks or allocates. Times are seconds on the steady clock.
 class PlayLog {
  public:
   struct Call {
-    std::int64_t first = 0;    ///< sample that was given first
-    std::int64_t samples = 0;  ///< number that was given
-    double play_time = 0.0;    ///< when `first` leaves the array
-    std::int64_t pulled = 0;   ///< sample that was taken first from the source
-    double time = 0.0;         ///< of the call
+    std::int64_t first = 0;    ///< first sample handed to the device
+    std::int64_t samples = 0;  ///< number of samples handed to it
+    double play_time = 0.0;    ///< time when `first` leaves the array
+    std::int64_t pulled = 0;   ///< first sample pulled from the source
+    double time = 0.0;         ///< time of the call
   };
 
-  /// Forgets all calls. @param rate samples a second. @pre nothing adds.
+  /// Clears the log. @param rate samples per second. @pre no thread is adding.
   void reset(double rate);
   void add(const Call& call) noexcept;
 
-  /// Time when a sample leaves the array; beyond the remembered calls by the sample rate.
+  /// Time when a sample leaves the array; outside the logged calls, extrapolated by the sample
+  /// rate.
   double play_time(std::int64_t sample) const;
-  /// Time of the call that took a sample from its source.
+  /// Time of the call that pulled a sample from the source.
   double ask_time(std::int64_t sample) const;
   /// Samples that have left the array at `now`.
   std::int64_t played(double now) const;
   std::int64_t calls() const { return calls_.load(std::memory_order_acquire); }
-  /// The newest call; zeros before the first.
+  /// The newest call; all zeros before the first.
   Call newest() const;
 
  private:

@@ -14,12 +14,12 @@ namespace {
 namespace ulh = Ultraleap::Haptics;
 using Seconds = std::chrono::duration<double>;
 
-constexpr std::size_t kAtOnce = 256;     // samples that are taken from the source at a time
+constexpr std::size_t kAtOnce = 256;     // samples pulled from the source at a time
 constexpr double kRateTolerance = 0.01;  // of the interval between samples
-constexpr double kLongestFade = 0.1;     // time that fade_out() waits for [s]
-constexpr double kStalled = 1.0;         // time without a call after which it has failed [s]
-constexpr double kDoubt = 0.1;           // time for which that is doubted [s]
-constexpr double kNoCalls = 0.02;        // time without a call after which nobody calls [s]
+constexpr double kLongestFade = 0.1;     // longest wait of fade_out() [s]
+constexpr double kStalled = 1.0;         // time without a call that suggests a stall [s]
+constexpr double kDoubt = 0.1;           // further time until the stall counts as a fault [s]
+constexpr double kNoCalls = 0.02;        // time without a call after which fade_out() returns [s]
 
 double seconds_now() {
   return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -49,7 +49,7 @@ void UltraleapEmission::start(SampleSource& source, const Setup& setup) {
   open_ = true;
 }
 
-/// Fades out for the first fault that is found.
+/// Fades out and records the fault, if it is the first.
 void UltraleapEmission::fail(Fault fault) {
   wanted_ = 0.0F;
   Fault none = Fault::None;
@@ -59,7 +59,7 @@ void UltraleapEmission::fail(Fault fault) {
 void UltraleapEmission::watch() {
   const double now = seconds_now();
   if (!open_ || now - last_call_ <= kStalled) return;
-  // a process that did not run for a second must be given time to be called back
+  // a process that was suspended for a second must get time to be called back
   if (suspected_ <= last_call_) {
     suspected_ = now;
   } else if (now - suspected_ > kDoubt) {
@@ -81,7 +81,7 @@ void UltraleapEmission::fade_out() {
 void UltraleapEmission::stop() {
   wanted_ = 0.0F;
   open_ = false;
-  // a callback may be at work: it has looked at open_ before, or will after, never between
+  // a callback may be running: wait until it has returned; later ones find open_ false
   while (inside_) std::this_thread::yield();
 }
 
@@ -95,7 +95,7 @@ void UltraleapEmission::callback(const ulh::StreamingEmitter& /*emitter*/,
     if (self->open_) {
       self->emit(interval, deadline);
     } else {
-      self->be_silent(interval);
+      self->fill_silence(interval);
     }
   } catch (...) {
     // an exception must not reach the SDK's thread
@@ -104,23 +104,22 @@ void UltraleapEmission::callback(const ulh::StreamingEmitter& /*emitter*/,
   self->inside_ = false;
 }
 
-/// Walks an interval that nobody fills; touches nothing that start() prepares.
-void UltraleapEmission::be_silent(ulh::OutputInterval& interval) {
+/// Fills an interval with silence; uses nothing that start() prepares.
+void UltraleapEmission::fill_silence(ulh::OutputInterval& interval) {
   const std::size_t points = points_;
   for (ulh::TimePointOnOutputInterval& point : interval) {
     for (std::size_t f = 0; f < points; ++f) point.controlPoint(f).setIntensity(0.0F);
   }
 }
 
-/// Returns the number of samples that an interval will ask for, which only its walk can tell for
-/// sure.
+/// Estimates the number of samples in an interval; only iterating over it gives the exact number.
 std::size_t UltraleapEmission::expected(const ulh::OutputInterval& interval) const {
   const Seconds length = interval.intervalEnd() - interval.firstSample();
   const double samples = std::round(length.count() * setup_.rate);
   return static_cast<std::size_t>(std::clamp(samples, 1.0, static_cast<double>(kAtOnce)));
 }
 
-/// Takes samples from the source.
+/// Pulls samples from the source.
 void UltraleapEmission::pull(std::size_t samples) {
   source_->fill(pulled_, std::span(block_).first(samples * now_.size()));
   pulled_ += static_cast<std::int64_t>(samples);
@@ -128,7 +127,7 @@ void UltraleapEmission::pull(std::size_t samples) {
   end_ = samples;
 }
 
-/// Sets the points of one time to the next sample.
+/// Sets the control points of one time point to the current sample.
 void UltraleapEmission::set_points(ulh::TimePointOnOutputInterval& point) {
   gain_ += std::clamp(wanted_.load(std::memory_order_relaxed) - gain_, -fade_step_, fade_step_);
   for (std::size_t f = 0; f < now_.size(); ++f) {
@@ -151,10 +150,10 @@ void UltraleapEmission::emit(ulh::OutputInterval& interval, const ulh::LocalTime
   const auto foci = static_cast<std::size_t>(setup_.foci);
   const auto ahead = static_cast<std::size_t>(gate_.delay());
   std::size_t left = expected(interval) + (pulled_ == 0 ? ahead : 0);
-  left -= std::min(left, end_ - at_);  // some may wait from the last call
+  left -= std::min(left, end_ - at_);  // some may be left from the last call
   for (ulh::TimePointOnOutputInterval& point : interval) {
     if (call.samples == 0) call.play_time = call.time + Seconds(point - begin).count();
-    // the first samples only fill the gate's line
+    // the first samples only fill the delay line of the gate
     for (;;) {
       if (at_ == end_) {
         pull(std::clamp<std::size_t>(left, 1, kAtOnce));

@@ -1,5 +1,5 @@
 #pragma once
-/// The callback in which the vendor's SDK asks for control points. Needs the SDK.
+/// The callback in which the vendor's SDK requests control points. Needs the SDK.
 
 #include <atomic>
 #include <ultraleap/haptics/streaming.hpp>
@@ -11,15 +11,15 @@
 
 namespace prostm {
 
-/// Gives a source's samples to the SDK, in order and each once, in one walk of each interval. Keeps
-/// points apart by PointGate, and rises from silence and falls into it within a fade, so that
-/// neither a start nor an end clicks. The callback allocates, locks and throws nothing; it may go
-/// on after stop(), and is silent then.
+/// Passes a source's samples to the SDK, in order and each once, in one pass over each interval.
+/// Keeps points apart by PointGate, and fades in at a start and out at an end, so that neither
+/// clicks. The callback does not allocate, lock or throw; calls after stop() are allowed and emit
+/// silence.
 class UltraleapEmission {
  public:
   enum class Fault : std::uint8_t {
     None,
-    Rate,     ///< the interval between samples is not what the source was made for
+    Rate,     ///< the interval between samples is not the one the source was made for
     Stalled,  ///< no callback came for a second
     Sdk       ///< an exception
   };
@@ -37,9 +37,9 @@ class UltraleapEmission {
   void fade_out();
   /// Begins to fade out. Any thread.
   void mute() { wanted_.store(0.0F, std::memory_order_relaxed); }
-  /// Finds out whether callbacks still come. Any thread. @pre started.
+  /// Checks that callbacks still arrive. Any thread. @pre started.
   void watch();
-  /// Lets go of the source. After this the source is not used, even if callbacks go on.
+  /// Releases the source, which is not used any more even if callbacks continue.
   void stop();
 
   /// For the SDK; `emission` is a pointer to this class.
@@ -49,7 +49,7 @@ class UltraleapEmission {
 
   const PlayLog& log() const { return log_; }
   std::int64_t late_calls() const { return late_.load(std::memory_order_relaxed); }
-  /// Why it has fallen silent by itself, if it has.
+  /// Reason why the emission has silenced itself, if it has.
   Fault fault() const { return fault_.load(std::memory_order_acquire); }
   /// Interval between samples when the fault Rate was found [s].
   double found_interval() const { return found_interval_.load(std::memory_order_relaxed); }
@@ -58,7 +58,7 @@ class UltraleapEmission {
   void emit(Ultraleap::Haptics::OutputInterval& interval,
             const Ultraleap::Haptics::LocalTimePoint& deadline);
   void fail(Fault fault);
-  void be_silent(Ultraleap::Haptics::OutputInterval& interval);
+  void fill_silence(Ultraleap::Haptics::OutputInterval& interval);
   std::size_t expected(const Ultraleap::Haptics::OutputInterval& interval) const;
   void pull(std::size_t samples);
   void set_points(Ultraleap::Haptics::TimePointOnOutputInterval& point);
@@ -68,20 +68,20 @@ class UltraleapEmission {
   Setup setup_;
   float fade_step_ = 1.0F;
 
-  // the callback's thread
+  // used by the callback's thread
   PointGate gate_;
-  std::vector<FocusSample> block_, now_;   // samples waiting in one piece; the one that is set
-  std::size_t at_ = 0, end_ = 0;           // samples of block_ that wait
+  std::vector<FocusSample> block_, now_;   // samples pulled in one piece; the current sample
+  std::size_t at_ = 0, end_ = 0;           // samples of block_ that are not used yet
   std::int64_t pulled_ = 0, emitted_ = 0;  // samples
   float gain_ = 0.0F;
 
   PlayLog log_;
   std::atomic<float> wanted_{0.0F};       // gain to fade to
-  std::atomic<double> silent_from_{0.0};  // when the first silent sample after mute() plays; 0: not
-  std::atomic<bool> open_{false}, inside_{false};  // samples may be given; a callback is at work
-  std::atomic<std::size_t> points_{0};             // control points that the SDK was asked for
-  std::atomic<double> last_call_{0.0};             // time, or that of start()
-  std::atomic<double> suspected_{0.0};             // time when calls were missed first
+  std::atomic<double> silent_from_{0.0};  // play time of the first silent sample after mute(), or 0
+  std::atomic<bool> open_{false}, inside_{false};  // samples may be emitted; in a callback
+  std::atomic<std::size_t> points_{0};             // control points requested from the SDK
+  std::atomic<double> last_call_{0.0};             // time of the last call, or of start()
+  std::atomic<double> suspected_{0.0};             // time when calls were first missing
   std::atomic<std::int64_t> late_{0};
   std::atomic<Fault> fault_{Fault::None};
   std::atomic<double> found_interval_{0.0};

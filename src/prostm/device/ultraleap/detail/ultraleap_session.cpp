@@ -15,21 +15,21 @@ namespace ulh = Ultraleap::Haptics;
 constexpr float kCallRate = 1000.0F;                 // callbacks a second
 constexpr double kLeastRate = 1e3, kMostRate = 1e6;  // of samples that an emission can make [Hz]
 constexpr double kRateTolerance = 1e-4;
-// distance of the transducers' middle from the origin [m]: a kit's tracker, the next origin that
-// there could be, is 89 mm away, and not every array is symmetrical.
+// largest distance of the transducers' middle from the origin [m]: not every array is symmetrical,
+// and a kit's tracker, the nearest other origin, is at least 89 mm away
 constexpr double kCentreTolerance = 0.02;
 
 [[noreturn]] void refuse(const std::string& sentence) {
   throw std::invalid_argument(sentence);
 }
 
-/// Throws unless a result is good: "WHAT (the SDK's message)REMEDY."
+/// Throws if a result is an error: "WHAT (the SDK's message)REMEDY."
 template <class Result>
 void require(const Result& result, const std::string& what, const std::string& remedy = "") {
   if (!result) refuse(what + " (" + message_of(result) + ")" + remedy + ".");
 }
 
-/// The SDK may have an error as a number or as an object with a message.
+/// Describes an error of the SDK, which may be a number or an object with a message.
 template <class Error>
 std::string words_of(const Error& error) {
   if constexpr (std::is_enum_v<Error> || std::is_integral_v<Error>) {
@@ -51,7 +51,7 @@ ulh::Device find_device(ulh::Library& library, const std::string& name) {
             ": connect it, switch it on, and look with prostm devices");
   } else {
     require(device, "The Ultraleap array '" + name + "' was not found",
-            ": prostm devices lists those that are there");
+            ": prostm devices lists the connected ones");
   }
   return device.value();
 }
@@ -89,7 +89,7 @@ void UltraleapEvents::onDeviceModificationRightsRescinded(const char* identifier
 void UltraleapEvents::onDeviceErrorDetected(const char* identifier, ulh::DeviceError error) {
   if (is_ours(identifier))
     end("The Ultraleap array '" + device_ + "' reports an error (" + words_of(error) +
-        "): look at the array, then start again.");
+        "): check the array, then start again.");
 }
 
 void UltraleapEvents::onLibraryDisconnected(const ulh::EndpointInfo& /*service*/) {
@@ -138,16 +138,16 @@ UltraleapSession::UltraleapSession(const UltraleapAddress& address, int foci,
 UltraleapSession::~UltraleapSession() {
   events_->close();
   library_.removeEventListener(events_);
-  // callbacks may go on until the emitter is gone; the emission is silent and outlives it
+  // callbacks may continue until the emitter is gone; the emission is silent and outlives it
   stop();
   emitter_.reset();
   static_cast<void>(library_.disconnect());
 }
 
-/// Throws if the middle of the transducers is not the origin, as in D.
+/// Throws unless the middle of the transducers is the origin, as in D.
 void UltraleapSession::check_place(const ulh::Device& device) const {
   const auto info = device.getInfo();
-  require(info, "The Ultraleap array '" + identifier_ + "' does not say what it is");
+  require(info, "The Ultraleap array '" + identifier_ + "' does not report its properties");
   if (!info.value().hasSupportFor(ulh::DeviceFeatures::StreamingHaptics))
     refuse("The Ultraleap array '" + identifier_ + "' cannot stream.");
   const auto transducers = info.value().getTransducers();
@@ -179,14 +179,14 @@ void UltraleapSession::claim(ulh::Device& device) {
   require(added, "The Ultraleap array '" + identifier_ + "' cannot be claimed");
 }
 
-/// Sets the number of control points and asks for the rate that it leaves.
+/// Sets the number of control points and reads the rate at which the array plays them.
 void UltraleapSession::set_rate(const ulh::Device& device, int foci) {
   require(emitter_->setControlPointCount(static_cast<std::size_t>(foci), ulh::AdjustRate::All),
           "The Ultraleap array '" + identifier_ + "' does not take " + std::to_string(foci) +
               " focal points",
           ": try fewer --paths");
   foci_ = foci;
-  // the emitter may keep a rate that the array cannot follow
+  // the emitter may keep a rate that is too fast for the array
   const auto limit = emitter_->getDeviceUpdateRateLimit(device, static_cast<std::size_t>(foci));
   require(limit, "The Ultraleap array '" + identifier_ + "' does not say its fastest rate");
   if (emitter_rate() > static_cast<double>(limit.value()) * (1.0 + kRateTolerance)) {
@@ -220,7 +220,7 @@ void UltraleapSession::set_foci(int foci, double rate) {
   if (!is_rate()) {
     refuse("The Ultraleap array '" + identifier_ + "' plays " + std::to_string(foci) +
            " focal points at " + hertz(emitter_rate()) + ", and these samples are made for " +
-           hertz(rate) + ": open it anew for that number of focal points.");
+           hertz(rate) + ": open it again for that number of focal points.");
   }
   rate_ = rate;
 }

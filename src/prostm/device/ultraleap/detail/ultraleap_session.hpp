@@ -18,7 +18,7 @@ std::string message_of(const Result& result) {
   return std::string(result.error().message());
 }
 
-/// Watches one array for what ends its emission. The SDK calls it, on threads of its own.
+/// Handles the events of one array that end its emission. The SDK calls it on its own threads.
 class UltraleapEvents final : public Ultraleap::Haptics::LibraryEventListener {
  public:
   /// @param emission is muted at the end; outlives this.
@@ -30,7 +30,7 @@ class UltraleapEvents final : public Ultraleap::Haptics::LibraryEventListener {
                              Ultraleap::Haptics::DeviceError error) override;
   void onLibraryDisconnected(const Ultraleap::Haptics::EndpointInfo& service) override;
 
-  /// Stops to listen: what follows is our own doing.
+  /// Stops listening, before prostm itself closes the array.
   void close() { closed_ = true; }
   bool is_gone() const { return gone_.load(std::memory_order_acquire); }
   /// Says in one sentence why the array is gone.
@@ -47,10 +47,10 @@ class UltraleapEvents final : public Ultraleap::Haptics::LibraryEventListener {
   std::string problem_;
 };
 
-/// Library, array and emitter, made together and given back together.
+/// Library, array and emitter, acquired together and released together.
 class UltraleapSession {
  public:
-  /// Connects, claims the array, and lets it run as fast as it can with `foci` control points.
+  /// Connects, claims the array, and selects its fastest rate with `foci` control points.
   /// @param emission is called back; outlives this. @throws std::invalid_argument with a sentence.
   UltraleapSession(const UltraleapAddress& address, int foci, UltraleapEmission& emission);
   ~UltraleapSession();
@@ -65,7 +65,7 @@ class UltraleapSession {
   void stop();
 
   int foci() const { return foci_; }
-  double rate() const { return rate_; }  ///< samples a second
+  double rate() const { return rate_; }  ///< samples per second
   double least_separation() const { return least_separation_; }
   int most_foci() const;
   int samples_a_call() const;
@@ -89,7 +89,7 @@ class UltraleapSession {
 
 /// Connects a library. @throws std::invalid_argument with a sentence.
 void connect_ultraleap(Ultraleap::Haptics::Library& library, const std::string& connection);
-/// Name of the other program that holds the claim; empty if none does.
+/// Returns the name of another program that has claimed the array; empty if no other has.
 std::string ultraleap_owner(const Ultraleap::Haptics::Device& device);
 
 }  // namespace prostm

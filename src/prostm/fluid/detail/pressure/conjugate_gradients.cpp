@@ -71,7 +71,7 @@ void ConjugateGradients::solve(int iterations) {
   for (int iteration = 1;; ++iteration) {
     apply(direction_, image_);
     const double curvature = dot(direction_, image_);
-    // there is nothing left to do, or nothing finite
+    // converged, or not finite
     if (!std::isnormal(curvature) || !std::isnormal(descent)) break;
     const double step = descent / curvature;
     if (iteration + 1 >= iterations) convergence.keep(solver_.fine(), pressure_);

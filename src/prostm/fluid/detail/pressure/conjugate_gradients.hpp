@@ -12,11 +12,11 @@ namespace prostm::fluid {
 /// number of threads, to the bit.
 class ConjugateGradients {
  public:
-  /// @param solver whose problem it solves; outlives it, as does `pool`.
+  /// @param solver whose problem is solved; must outlive this object, as must `pool`.
   ConjugateGradients(PressureSolver& solver, WorkerPool& pool);
 
-  /// Goes on from the solver's pressure, by one V-cycle an iteration. Leaves the residual in the
-  /// solver's right side.
+  /// Iterates from the solver's pressure, with one V-cycle per iteration. Leaves the residual in
+  /// the solver's right side.
   void solve(int iterations);
 
  private:

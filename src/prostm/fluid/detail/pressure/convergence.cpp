@@ -66,7 +66,7 @@ void Convergence::compare(const PressureLevel& level, const Field& p) {
 }
 
 double Convergence::error() const {
-  // ρ of a V-cycle: the first one after a warm start takes more away than those that follow
+  // ρ of a V-cycle: the first one after a warm start reduces the error more than those that follow
   constexpr double kLeast = 0.3;
   constexpr double kMost = 0.995;  // of sweeps that hardly converge
   if (!std::isfinite(last_ + before_ + pressure_) || pressure_ == 0.0 || last_ == 0.0) return 0.0;

@@ -1,5 +1,5 @@
 #pragma once
-/// How far the pressure beside hands is from the one that a solver would reach.
+/// Estimates how far the pressure next to hands is from that of a converged solve.
 
 #include <vector>
 
@@ -7,25 +7,25 @@
 
 namespace prostm::fluid {
 
-/// Follows the pressure in the cells of the rows that hands cut, from iterate to iterate. If each
+/// Compares the pressure in the cells of the rows that hands cut from iterate to iterate. If each
 /// iteration leaves the share ρ of the error, the last one, which changed the pressure by d, leaves
 /// d ρ/(1 − ρ), (F16) of docs/design/fluid.md; ρ is the ratio of the last two changes.
 class Convergence {
  public:
   explicit Convergence(const PaddedGrid& grid);
 
-  /// A solve begins.
+  /// Starts a solve.
   void begin();
-  /// Keeps the pressure before one of the last two iterations.
+  /// Stores the pressure before one of the last two iterations.
   void keep(const PressureLevel& level, const Field& p);
-  /// That iteration is done. @pre after keep(), with the same level.
+  /// Compares the pressure after that iteration with it. @pre after keep(), with the same level.
   void compare(const PressureLevel& level, const Field& p);
 
   /// Estimated rms error over the rms pressure there; 0 without hands.
   double error() const;
 
  private:
-  std::vector<float> kept_;  // the cells in the order in which they are walked; room for all
+  std::vector<float> kept_;  // stored pressures in the order of the cells; room for all cells
   int iterations_ = 0;
   double before_ = 0.0, last_ = 0.0;  // Σ of the squared changes of the last two
   double pressure_ = 0.0;             // Σ of the squared pressures

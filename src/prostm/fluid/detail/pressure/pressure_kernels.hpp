@@ -1,5 +1,5 @@
 #pragma once
-/// Row kernels of the pressure solvers, written twice: plain (the reference) and with vectors.
+/// Row kernels of the pressure solvers, in two versions: scalar (the reference) and vector.
 
 #include "prostm/fluid/detail/pressure/pressure_level.hpp"
 
@@ -26,8 +26,8 @@ struct PressureKernels {
 };
 
 const PressureKernels& scalar_pressure_kernels();
-/// The vector kernels for this processor; the plain ones where Highway knows only its one-lane
-/// fallback.
+/// Returns the vector kernels for this processor, or the scalar ones if Highway has only its
+/// one-lane fallback.
 const PressureKernels& fast_pressure_kernels();
 
 }  // namespace prostm::fluid

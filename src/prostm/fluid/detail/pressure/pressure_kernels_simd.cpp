@@ -14,7 +14,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 
-// every row below is walked in whole vectors up to width(): D⁻¹ = 0 there keeps the halo at 0
+// every row below is processed in whole vectors up to width(): D⁻¹ = 0 there keeps the halo at 0
 Index lanes() {
   return static_cast<Index>(hn::Lanes(D()));
 }

@@ -19,7 +19,7 @@ struct RowSpan {
   bool empty() const { return begin >= end; }
 };
 
-/// The smallest span with both.
+/// Returns the smallest span that contains both.
 inline RowSpan join(RowSpan a, RowSpan b) {
   if (a.empty()) return b;
   if (b.empty()) return a;

@@ -11,7 +11,7 @@ namespace {
 
 // Relaxation factors of m Jacobi sweeps whose product is the Chebyshev polynomial on [0.25, 1.95],
 // the upper part of the spectrum of D⁻¹A: 1/ω = 1.1 + 0.85 cos(π(i − 1/2)/m), in an order that
-// keeps errors small on the way. Sweeps after the coarse grid's correction do more than those
+// keeps intermediate errors small. Sweeps after the coarse grid's correction gain more than those
 // before it.
 constexpr std::array kBefore = {0.909091F};
 constexpr std::array kBeforeFromZero = {0.587875F, 2.004172F};
@@ -95,7 +95,7 @@ void PressureSolver::smooth(Level& level, std::span<const float> omegas) {
 }
 
 void PressureSolver::smooth_from_zero(Level& level, std::span<const float> omegas) {
-  // the first sweep has no neighbours
+  // the first sweep starts from 0, so neighbours contribute nothing
   over_planes(level.problem.grid.n, [&](int k0, int k1) {
     kernels_.smooth_zero(level.problem, level.b.data(), omegas.front(), level.p.data(), k0, k1);
   });
@@ -148,7 +148,7 @@ void PressureSolver::solve_bottom(Level& level) {
   }
 }
 
-/// Follows the last two.
+/// Runs the iterations, and compares the last two.
 template <class Iteration>
 void PressureSolver::iterate(int times, const Iteration& iteration) {
   convergence_.begin();

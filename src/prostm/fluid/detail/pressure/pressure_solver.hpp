@@ -33,10 +33,10 @@ class PressureSolver {
   void jacobi(int sweeps, bool warm);
 
   // for ConjugateGradients
-  /// Puts one V-cycle from 0 for the right side in place of the pressure.
+  /// Replaces the pressure by one V-cycle from 0 for the right side.
   void v_cycle_from_zero() { v_cycle(0, true); }
   const PressureKernels& kernels() const { return kernels_; }
-  /// How far the last solve came.
+  /// Convergence of the last solve.
   Convergence& convergence() { return convergence_; }
 
  private:

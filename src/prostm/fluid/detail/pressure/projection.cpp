@@ -38,7 +38,7 @@ HWY_INLINE void subtract_row(float* u, const float* p, Index below, float factor
   for (int i = 0; i < n; ++i) u[i] -= factor * (p[i] - p[i - below]);
 }
 
-/// Lets shut faces in plane k of the hands' box move with their wall.
+/// Gives the shut faces in plane k of the hands' box the velocity of their wall.
 void take_wall_velocity(const PressureLevel& level, const Obstacle& obstacle, Field velocity[3],
                         int k) {
   const CellBox& box = level.box;
@@ -56,7 +56,7 @@ void take_wall_velocity(const PressureLevel& level, const Obstacle& obstacle, Fi
   }
 }
 
-/// Sums of outflows in as many lanes on every processor, so that totals are the same.
+/// Sums of outflows, with the same number of lanes on every processor so that totals are the same.
 struct LaneSums {
   alignas(64) float squares[PaddedGrid::kLane] = {}, largest[PaddedGrid::kLane] = {};
 };

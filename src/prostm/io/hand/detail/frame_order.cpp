@@ -9,10 +9,11 @@ namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-/// The longest subsequence of strictly increasing times; of equal times the first.
+/// The longest subsequence of strictly increasing times; the first of equal times.
 std::vector<std::size_t> longest_increasing(std::span<const FrameTime> frames) {
-  std::vector<std::size_t> last;                          // of the best sequence of each length
-  std::vector<std::size_t> before(frames.size(), kNone);  // in the best sequence to each frame
+  std::vector<std::size_t> last;  // last frame of the best sequence of each length
+  std::vector<std::size_t> before(frames.size(),
+                                  kNone);  // predecessor in the best sequence to each frame
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const auto at =
         std::lower_bound(last.begin(), last.end(), frames[i].time,
@@ -37,8 +38,8 @@ class Fit {
  public:
   Fit(std::span<const FrameTime> frames, double interval) : frames_(frames), interval_(interval) {}
 
-  /// How far frame i is from the usual interval to both neighbours, as the sum of logarithms;
-  /// nothing if it does not lie between them.
+  /// Deviation of frame i from the usual interval to both neighbours, as a sum of logarithms;
+  /// nothing if it is not between them.
   std::optional<double> misfit(std::size_t before, std::size_t i, std::size_t after) const {
     double sum = 0.0;
     for (const auto& [a, b] : {std::pair(before, i), std::pair(i, after)}) {
@@ -56,7 +57,7 @@ class Fit {
   double interval_;
 };
 
-/// Lets a frame that was left out take the place of its neighbour in `kept` if it fits better.
+/// Replaces a frame in `kept` by an omitted neighbour that fits better.
 void mend(std::size_t left_out, const Fit& fit, std::vector<std::size_t>& kept) {
   constexpr double kClearly = 0.5;  // a factor of 1.6 in an interval
   const auto n =

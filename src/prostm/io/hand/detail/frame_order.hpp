@@ -1,5 +1,5 @@
 #pragma once
-/// Finds the frames of a recording whose times do not fit. Private to io.
+/// Finds frames of a recording with inconsistent times. Private to io.
 
 #include <cstddef>
 #include <span>
@@ -7,15 +7,15 @@
 
 namespace prostm {
 
-/// A frame's time [s], and its place in the file, which counts frames that could not be read, too.
+/// A frame's time [s], and its index in the file, including unreadable frames.
 struct FrameTime {
   double time;
   std::size_t place;
 };
 
-/// Returns the indices of the most frames whose times increase. Of two frames that exclude each
-/// other, the one is left out whose time fits worse between its neighbours at the usual interval;
-/// the later one if neither does.
+/// Returns the indices of the largest set of frames with increasing times. Of two frames that
+/// exclude each other, the one whose time fits worse between its neighbours, by the usual interval,
+/// is omitted; the later one if neither fits.
 std::vector<std::size_t> frames_in_order(std::span<const FrameTime> frames);
 
 /// Median of the intervals between frames whose times increase [s]; 0 for fewer than two frames.

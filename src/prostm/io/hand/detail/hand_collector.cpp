@@ -13,23 +13,23 @@
 namespace prostm {
 namespace {
 
-constexpr double kMostBad = 0.25;                     // share of frames, and of hands
-constexpr double kMaxRecordingTime = 86400.0;         // [s]
+constexpr double kMostBad = 0.25;              // largest share of bad frames, and of bad hands
+constexpr double kMaxRecordingTime = 86400.0;  // [s]
 constexpr double kFastest = 1000.0, kSlowest = 0.25;  // rates of trackers [Hz]
 constexpr double kUsualRate = 100.0;                  // [Hz]
-constexpr double kUsualSpan = 0.0577;  // from index to little knuckle of an average hand [m]
+constexpr double kUsualSpan = 0.0577;  // index to little knuckle of an average hand [m]
 
 struct Unit {
   const char* name;
-  double in_si;  // of one of this unit
+  double in_si;  // value of the unit in SI
 };
 constexpr std::array<Unit, 4> kTimeUnits = {
     {{"seconds", 1.0}, {"milliseconds", 1e-3}, {"microseconds", 1e-6}, {"nanoseconds", 1e-9}}};
 constexpr std::array<Unit, 4> kLengthUnits = {
     {{"metres", 1.0}, {"centimetres", 1e-2}, {"millimetres", 1e-3}, {"inches", 25.4e-3}}};
 
-/// The unit in which `value` comes nearest to `usual`, and within a factor of `within`; null if
-/// no unit does.
+/// The unit in which `value` is closest to `usual`, within a factor `within`; null if no unit is
+/// close enough.
 template <std::size_t n>
 const Unit* unit_for(const std::array<Unit, n>& units, double value, double usual, double within) {
   const auto away = [&](const Unit& unit) {
@@ -78,17 +78,17 @@ void HandCollector::note_rate(double rate) {
   if (rate >= kSlowest && rate <= kFastest) rates_.push_back(rate);
 }
 
-/// Drops frame i for its time.
+/// Drops frame i because of its time.
 void HandCollector::drop(std::size_t i) {
   const Frame& frame = frames_[i];
   reading_.faults.add(
       HandFault::Order,
-      fmt::format("{}, {}: its time, {:.6f} s after that of the first frame, does not fit those of "
-                  "the frames around it; time must increase",
+      fmt::format("{}, {}: its time, {:.6f} s after that of the first frame, is inconsistent with "
+                  "those of the frames around it; time must increase",
                   name_, frame.where, frame.frame.time - frames_.front().frame.time));
 }
 
-/// Drops frames whose times do not increase, and a first or last one far from all others.
+/// Drops frames with times that do not increase, and a first or last frame far from all others.
 void HandCollector::drop_astray() {
   std::vector<FrameTime> times;
   for (const Frame& frame : frames_) times.push_back({frame.frame.time, frame.place});
@@ -118,20 +118,20 @@ void HandCollector::check_rate() const {
   const double interval = usual_interval(times);
   if (!(interval > 0.0)) return;
   const double rate = 1.0 / interval, said = rates_.empty() ? 0.0 : median(rates_);
-  // recordings are thinned out, but hold no more frames than the tracker made
+  // recordings may have fewer frames than the tracker made, but not more
   const bool fast = rate > kFastest || (said > 0.0 && rate > 3.0 * said);
   if (!fast && rate >= kSlowest) return;
   const Unit* unit =
       unit_for(kTimeUnits, interval * units_.second, 1.0 / (said > 0.0 ? said : kUsualRate), 12.0);
   const bool other = unit != nullptr && std::string_view(unit->name) != units_.time_unit;
-  if (!fast && !other) return;  // slow ones may have been made by hand
-  throw InputError(
-      fmt::format("{}: by \"{}\" it has {:.4g} frames per second, which no tracker has{}; {}",
-                  name_, units_.stamp, rate,
-                  said > 0.0 ? fmt::format(" (the tracker says {:.4g})", said) : std::string(),
-                  other ? fmt::format("the times seem to be in {}; they must be in {}", unit->name,
-                                      units_.time_unit)
-                        : fmt::format("the times must be in {}", units_.time_unit)));
+  if (!fast && !other) return;  // slow recordings may have been written by hand
+  throw InputError(fmt::format(
+      "{}: by \"{}\" it has {:.4g} frames per second, which is not possible for a tracker{}; {}",
+      name_, units_.stamp, rate,
+      said > 0.0 ? fmt::format(" (the tracker says {:.4g})", said) : std::string(),
+      other ? fmt::format("the times seem to be in {}; they must be in {}", unit->name,
+                          units_.time_unit)
+            : fmt::format("the times must be in {}", units_.time_unit)));
 }
 
 std::string HandCollector::guess_of_lengths() const {

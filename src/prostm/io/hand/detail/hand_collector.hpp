@@ -1,5 +1,5 @@
 #pragma once
-/// Collects the frames of a hand recording and drops what is bad. Private to io.
+/// Collects the frames of a hand recording, and drops bad frames and hands. Private to io.
 
 #include <functional>
 #include <string>
@@ -10,32 +10,33 @@
 
 namespace prostm {
 
-/// How a format writes times and lengths.
+/// The units of times and lengths in a format.
 struct HandUnits {
   const char* stamp;        ///< the member with a frame's time
-  double second;            ///< in the unit of `stamp`
-  const char* time_unit;    ///< of `stamp`
-  double metre;             ///< in the unit of positions
-  const char* length_unit;  ///< of positions
+  double second;            ///< one second in the unit of `stamp`
+  const char* time_unit;    ///< name of the unit of `stamp`
+  double metre;             ///< one metre in the unit of positions
+  const char* length_unit;  ///< name of the unit of positions
 };
 
-/// Takes the frames of one file. A bad hand costs that hand, a bad frame or time that frame; a file
-/// with more than a quarter of either is refused.
+/// Collects the frames of one file. A bad hand is dropped, as is a frame with a fault or a bad
+/// time; a file that loses more than a quarter of its frames or hands is refused.
 class HandCollector {
  public:
   HandCollector(std::string name, const HandUnits& units);
 
-  /// Reads a frame, whose time is in seconds of any origin; `read` throws HandError for a fault of
+  /// Adds a frame, with its time in seconds from any origin. `read` throws HandError for a fault of
   /// the whole frame, and counts faults of its hands.
   void add(const std::string& where,
            const std::function<HandFrame(const HandFrame* before, HandFaults& faults)>& read);
-  /// Notes the distance between the knuckles of the index and the little finger, in the file's
-  /// unit, of a hand that may be bad.
+  /// Records the distance between the knuckles of index and little finger, in the file's unit, also
+  /// of bad hands.
   void note_span(double span);
-  /// Notes a frame rate that the tracker gives [Hz].
+  /// Records a frame rate reported by the tracker [Hz].
   void note_rate(double rate);
 
-  /// @throws InputError: no frames, too many bad ones, a rate that no tracker has, more than a day.
+  /// @throws InputError: no frames, too many bad ones, an impossible frame rate, a duration above a
+  /// day.
   HandRecording finish();
 
  private:

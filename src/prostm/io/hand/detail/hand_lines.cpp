@@ -29,7 +29,7 @@ bool has_value_a_line(std::string_view text) {
   std::size_t line = 0;
   const std::string_view first = next_line(text, line), second = next_line(text, line);
   if (second.empty()) return false;
-  // the first line may be damaged; that of a list on several lines is its bracket
+  // the first line may be damaged; for a list on several lines it is the bracket
   return nlohmann::json::accept(first) ||
          (first.find('{') != first.npos && nlohmann::json::accept(second));
 }

@@ -9,14 +9,14 @@ namespace prostm::planning {
 namespace {
 
 constexpr float kArmijo = 1e-4F;
-constexpr float kLeastSlope = 1e-12F;  // flatter directions lead nowhere
+constexpr float kLeastSlope = 1e-12F;  // directions flatter than this end the descent
 constexpr float kLeastCurvature = 1e-6F;
 constexpr int kHalvings = 12;         // shorter trials of a step before the memory is dropped
 constexpr float kFirstStep = 1.5F;    // longest move of a sample before curvature is known [mm]
 constexpr float kLongestStep = 6.0F;  // longest move of a sample in any step [mm]
 
-// Curvature that the preconditioner expects of a mode with q = 2 − 2 cos(2πf/N): that of the error
-// itself, and the share of the length weight that acts across a mode.
+// Curvature that the preconditioner assumes for a mode with q = 2 − 2 cos(2πf/N): the curvature of
+// the error itself, and the share of the length weight that acts across a mode.
 constexpr double kErrorCurvature = 0.15, kLengthShare = 0.3;
 
 }  // namespace
@@ -45,7 +45,7 @@ void Descent::evaluate(const CellTiles& cells, Fit& fit) {
   evaluate_near(cells, fit);
 }
 
-/// The same as evaluate() for paths near those that were evaluated last.
+/// Same as evaluate(), for paths near those of the previous evaluation.
 void Descent::evaluate_near(const CellTiles& cells, Fit& fit) {
   pairs_.update(fit.loops, settings_.shape);
   reconstruct_(cells, fit.loops, settings_.reconstruction, Wanted::PressuresAndGradient, scratch_,
@@ -122,7 +122,7 @@ void Descent::remember(const Fit& from, const Fit& to) {
     change.x[i] = to.reconstruction.gradient_x[i] - from.reconstruction.gradient_x[i];
     change.y[i] = to.reconstruction.gradient_y[i] - from.reconstruction.gradient_y[i];
   }
-  // remembering a step of negative curvature would make the direction point uphill
+  // a stored step of negative curvature would make the direction point uphill
   const float curvature = operations.dot(step, change);
   if (curvature <= kLeastCurvature * operations.dot(change, change)) return;
   Plane& scaled = direction_;

@@ -12,7 +12,7 @@
 
 namespace prostm::planning {
 
-/// Settings of the cost that descends: the reconstruction error (P11) and the shape's costs
+/// Settings of the minimised cost: the reconstruction error (P11) and the costs of shape
 /// (P13)–(P15).
 struct FitSettings {
   ReconstructionSettings reconstruction;
@@ -23,13 +23,13 @@ struct FitSettings {
 struct Fit {
   Loops loops;
   Reconstruction reconstruction;  ///< that of `loops`
-  float cost = 0.0F;              ///< error and shape together
+  float cost = 0.0F;              ///< sum of error and shape costs
 };
 
 /// Sized once; allocates nothing after construction.
 class Descent {
  public:
-  /// @param max_tiles the most tiles that run() will be given. @param samples of each path.
+  /// @param max_tiles maximum number of tiles of later calls. @param samples samples per path.
   Descent(std::size_t max_tiles, int samples, const FitSettings& settings);
 
   const FitSettings& settings() const { return settings_; }
@@ -39,11 +39,11 @@ class Descent {
   const std::vector<ReconstructionScratch::TileFit>& fits() const { return scratch_.fits; }
   /// Computes `fit.reconstruction` at `fit.loops`.
   void solve(const CellTiles& cells, Fit& fit);
-  /// The same, and `fit.cost`, for any paths.
+  /// Computes `fit.reconstruction` and `fit.cost`, for any paths.
   void evaluate(const CellTiles& cells, Fit& fit);
-  /// Moves the samples downhill for at most `evaluations` evaluations; all but the first begin
-  /// before the deadline. The cost never rises.
-  /// @return evaluations used; fewer also if no step lowers the cost.
+  /// Moves the samples downhill for at most `evaluations` evaluations; no evaluation but the first
+  /// begins after the deadline. The cost never rises.
+  /// @return evaluations used: fewer than allowed if no step lowers the cost.
   int run(const CellTiles& cells, Fit& fit, int evaluations, const Deadline& deadline = {});
 
  private:
@@ -51,7 +51,7 @@ class Descent {
   struct Plane {
     alignas(64) NodeArray x, y;
   };
-  /// On the nodes in use.
+  /// Vector operations on the nodes in use.
   struct Operations;
   void evaluate_near(const CellTiles& cells, Fit& fit);
   void find_direction(const Loops& loops, const Reconstruction& at);

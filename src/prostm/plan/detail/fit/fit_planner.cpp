@@ -13,22 +13,22 @@ namespace prostm::planning {
 namespace {
 
 constexpr double kSpacingShare = 0.9;   // spacing that valid paths keep, over σ
-constexpr double kAlongShare = 2.0;     // over σ: samples nearer along a path need no spacing
-constexpr double kRounding = 1e-4;      // share of a bound that single precision may cost
+constexpr double kAlongShare = 2.0;     // over σ: samples nearer along a path may be closer
+constexpr double kRounding = 1e-4;      // relative margin of bounds for single-precision rounding
 constexpr double kFastWidth = 6.0;      // width of the cells of preset fast [mm]
-constexpr double kFastFineWidth = 4.0;  // width of the cells that its pressures are solved on [mm]
+constexpr double kFastFineWidth = 4.0;  // width of the cells for its pressures [mm]
 constexpr int kFastEvaluations = 2, kFastWarmEvaluations = 4, kFastSmallEvaluations = 4;
-constexpr int kFastFinePaths = 1;  // most paths of a target small enough to need finer cells
+constexpr int kFastFinePaths = 1;  // most paths of a target that is small enough for finer cells
 constexpr int kFastRegionPasses = 3, kFastStopPasses = 2;
-constexpr int kMendRounds = 8;      // rounds at most, on uneven skin
-constexpr double kMendStep = 2e-3;  // further share of its bound that a path gives up in each round
-constexpr int kMostHalvings = 60;   // halvings of a circle until it is short enough on any skin
-// Output that is this many times the wanted pressure bounds nothing, and wanted pressure above this
-// many times the output is cut to that: single precision resolves the range between.
+constexpr int kMendRounds = 8;      // maximum number of rounds, on uneven skin
+constexpr double kMendStep = 2e-3;  // relative reduction of a too long path's bound per round
+constexpr int kMostHalvings = 60;   // halvings that make a circle short enough on any skin
+// Bound of the ratios of full output to pressure and of pressure to full output, so that single
+// precision resolves both. Higher output counts as unlimited; higher pressure is clamped.
 constexpr double kAmple = 1e4;
-constexpr int kMoveRounds = 4;         // rounds of points that are moved and then mended
-constexpr float kMovedBending = 0.1F;  // share of the weight of (P15) that they have
-constexpr int kPieces = 2;             // pieces of a segment once preset best has found its paths
+constexpr int kMoveRounds = 4;         // rounds of moving points and mending paths
+constexpr float kMovedBending = 0.1F;  // factor on the weight of (P15) while points move
+constexpr int kPieces = 2;             // pieces per segment in plans of preset best
 
 SearchSettings search_settings(const PlanSettings& s) {
   SearchSettings search;
@@ -57,14 +57,14 @@ SearchSettings search_settings(const PlanSettings& s) {
   return search;
 }
 
-/// Whether all numbers have the same bits; much faster than comparing numbers.
+/// Returns whether all values have the same bits; much faster than comparing them as numbers.
 bool is_constant(const std::vector<double>& values) {
   return values.size() < 2 ||
          std::memcmp(values.data(), values.data() + 1, (values.size() - 1) * sizeof(double)) == 0;
 }
 
-/// Number of pieces of each segment of the search. The pressure is linear between samples, so it
-/// follows the field better the closer they lie.
+/// Number of pieces into which a plan divides each segment of the search. The pressure is linear
+/// between samples, so it follows the field better the closer they lie.
 int pieces_of(const PlanSettings& s) {
   return s.traits().halves_segments && kPieces * s.moved_samples() <= kMaxPathPoints ? kPieces : 1;
 }
@@ -105,7 +105,7 @@ PlayBounds FitPlanner::play_bounds(double gain, double speed) const {
                          static_cast<float>(settings_.silent_below * room));
 }
 
-/// Brings the paths of fit_ to the coordinates of a target with this origin.
+/// Transforms the paths of fit_ to the coordinates of a target with this origin.
 void FitPlanner::move_to(const Vec2& origin) {
   const Vec2 shift = kMmPerMetre * (origin_ - origin);
   for (std::size_t i = 0; i < fit_.loops.nodes(); ++i) {
@@ -158,10 +158,10 @@ boost::container::static_vector<int, kMaxPaths> FitPlanner::by_pressure() const 
   return order;
 }
 
-/// Bounds each path of points_ by the length in the plane at which it reaches its longest length on
-/// the skin, provided that its slopes stay as they are.
-/// @param share of that length at which a path that is too long aims. @return whether any path is
-/// too long.
+/// Sets the bound of each path of points_: the length in the plane at which it reaches its maximum
+/// length on the skin, provided that its slopes do not change.
+/// @param share factor on the bound of a path that is too long. @return whether any path is too
+/// long.
 bool FitPlanner::bound_lengths(const TargetField& target, int paths, double share,
                                SpacingRule& rule) {
   bool any = false;
@@ -175,9 +175,9 @@ bool FitPlanner::bound_lengths(const TargetField& target, int paths, double shar
   return any;
 }
 
-/// Leaves out the paths of points_ that are too long on the skin; if all are, the first becomes a
+/// Drops the paths of points_ that are too long on the skin; if all are, the first becomes a
 /// circle that is short enough. @return the number of paths left.
-int FitPlanner::leave_out_long(const TargetField& target, int paths, double least_length) {
+int FitPlanner::drop_long(const TargetField& target, int paths, double least_length) {
   const auto is_long = [&](std::span<const Vec2> loop) {
     return loop_length(loop) * skin_factor(target, loop) > kMmPerMetre * settings_.max_length();
   };
@@ -197,8 +197,8 @@ int FitPlanner::leave_out_long(const TargetField& target, int paths, double leas
   return 1;
 }
 
-/// The rule that valid paths keep. @param between distance from a sample to the one that will lie
-/// half way to the next [mm].
+/// Returns the rule that valid paths keep. @param between distance from a sample to the midpoint of
+/// its segment, where a further sample will be added; 0: none will [mm].
 SpacingRule FitPlanner::spacing_rule(double between) const {
   const double sigma = kMmPerMetre * settings_.sigma;
   SpacingRule rule;
@@ -208,16 +208,16 @@ SpacingRule FitPlanner::spacing_rule(double between) const {
   return rule;
 }
 
-/// Makes the paths of points_ keep the rule and their longest length on the skin. @return the
+/// Makes the paths of points_ keep the rule and their maximum length on the skin. @return the
 /// number of paths kept.
 int FitPlanner::space_out(const TargetField& target, int paths, SpacingRule rule) {
-  // a mended path lies on other slopes than before, so its bound changes
+  // mending moves a path to other slopes of the skin, so its bound changes
   bool any_long = bound_lengths(target, paths, 1.0 - kRounding, rule);
   for (int round = 1; round == 1 || (any_long && round <= kMendRounds); ++round) {
     paths = make_spaced(points_of(paths), samples_, rule, spacing_);
     any_long = bound_lengths(target, paths, 1.0 - round * kMendStep, rule);
   }
-  return any_long ? leave_out_long(target, paths, rule.least_length) : paths;
+  return any_long ? drop_long(target, paths, rule.least_length) : paths;
 }
 
 /// Copies the paths of points_ to fit_.
@@ -230,9 +230,10 @@ void FitPlanner::take_points(int paths) {
   }
 }
 
-/// Mends length on the skin, spacing and crossings; then solves the pressures as they are played.
+/// Mends length on the skin, spacing and crossings; then solves the pressures and makes them
+/// playable.
 void FitPlanner::mend(const TargetField& target, PlanStats& stats) {
-  // first the samples of the search, which are fewer and so easier to move
+  // first the samples of the search: they are fewer, and so easier to move
   int paths = 0;
   samples_ = fit_.loops.samples;
   for (const int k : by_pressure()) copy_path(k, paths++);
@@ -250,7 +251,7 @@ int FitPlanner::mend_between(const TargetField& target, int paths) {
   samples_ *= pieces_;
   for (int k = 0; k < paths; ++k) copy_path(k, k);
   SpacingRule rule = spacing_rule(0.0);
-  // more samples see more of the skin's slopes
+  // with more samples, paths follow more of the skin's slopes and become longer
   const bool any_long = bound_lengths(target, paths, 1.0 - kRounding, rule);
   if (!any_long && are_apart(points_of(paths), samples_, rule, spacing_)) return paths;
   paths = space_out(target, paths, rule);
@@ -258,7 +259,7 @@ int FitPlanner::mend_between(const TargetField& target, int paths) {
   return paths;
 }
 
-/// Copies the paths of points_ to plan_, and sets bounds_ to what the emission can play on them.
+/// Copies the paths of points_ to plan_, and sets bounds_ to the limits of the emission on them.
 void FitPlanner::take_plan(const TargetField& target, int paths) {
   plan_.loops.reset(samples_, paths);
   bounds_ = play_bounds(settings_.gain, settings_.path_speed());
@@ -268,7 +269,7 @@ void FitPlanner::take_plan(const TargetField& target, int paths) {
     for (int i = 0; i < samples_; ++i) {
       Vec2& x = loop[static_cast<std::size_t>(i)];
       plan_.loops.set_point(i, k, x);
-      x = plan_.loops.point(i, k);  // rounded as in the plan
+      x = plan_.loops.point(i, k);  // the same rounding as in the plan
     }
     factor_[place] = skin_factor(target, loop);
     length_[place] = loop_length(loop) / kMmPerMetre * factor_[place];
@@ -285,34 +286,34 @@ void FitPlanner::take_plan(const TargetField& target, int paths) {
   }
 }
 
-/// Slows the paths down until all make whole laps in one loop.
+/// Slows the paths down so that each makes a whole number of laps in a common loop.
 void FitPlanner::step_together(int paths) {
   const auto own = std::span<const double>(period_).first(static_cast<std::size_t>(paths));
   const double longest = 1.0 / settings_.draw_rate;
   loop_ = is_alone_ ? choose_loop(own, longest, last_period_) : loop_of(own, longest);
   for (int k = 0; k < paths; ++k) {
     const auto place = static_cast<std::size_t>(k);
-    // a path is never longer than a lap may be, but for what single precision costs
+    // rounding to single precision may make a path slightly longer than allowed
     loop_.laps[place] = std::max(loop_.laps[place], 1);
     period_[place] = loop_.period / loop_.laps[place];
   }
 }
 
-/// Solves the pressures of the paths of points_, nearly as they can be played, and leaves out
-/// silent paths.
+/// Solves the pressures of the paths of points_, nearly within the limits of the emission, and
+/// drops silent paths.
 void FitPlanner::solve(const TargetField& target, int& paths, PlanStats& stats) {
   for (;;) {
     take_plan(target, paths);
     ++stats.cost_evaluations;
     search_.solve(bounds_, plan_);
-    if (!leave_out_silent(paths)) return;
+    if (!drop_silent(paths)) return;
     take_points(paths);
   }
 }
 
-/// Leaves out the most silent of several paths of points_ if its pressure is nowhere worth a path,
-/// or if it is silent while another sounds. @return whether a path was left out.
-bool FitPlanner::leave_out_silent(int& paths) {
+/// Drops the weakest of several paths of points_ if its pressure is weak everywhere, or if it is
+/// silent while another path is not. @return whether a path was dropped.
+bool FitPlanner::drop_silent(int& paths) {
   std::array<float, kMaxPaths> highest{};
   for (int k = 0; k < paths; ++k) {
     float& own = highest[static_cast<std::size_t>(k)];
@@ -320,23 +321,24 @@ bool FitPlanner::leave_out_silent(int& paths) {
       own = std::max(own, plan_.reconstruction.pressure[plan_.loops.node(i, k)]);
   }
   const auto [least, most] = std::minmax_element(highest.begin(), highest.begin() + paths);
-  const float sounds = play_bounds(settings_.gain, settings_.path_speed()).least[0];
+  const float not_silent = play_bounds(settings_.gain, settings_.path_speed()).least[0];
   const auto weak = static_cast<float>(settings_.weak_pressure);
-  if (paths == 1 || *least >= (*most >= sounds ? std::max(weak, sounds) : weak)) return false;
+  if (paths == 1 || *least >= (*most >= not_silent ? std::max(weak, not_silent) : weak))
+    return false;
   const auto silent = static_cast<int>(least - highest.begin());
   --paths;
   std::copy(path_at(silent).end(), path_at(paths).end(), path_at(silent).begin());
   return true;
 }
 
-/// Chooses where the laps of plan_ start, (P16).
+/// Chooses the starts of the laps of plan_, (P16).
 void FitPlanner::choose_starts() {
   starts_ = phases_.choose(fit_.loops, std::span<const double>(period_).first(
                                            static_cast<std::size_t>(plan_.loops.paths)));
   for (LapStart& start : starts_) start.first *= pieces_;
 }
 
-/// The shape that the paths of fit_ should have on this skin.
+/// Returns the shape settings of the paths of fit_ on this skin.
 ShapeSettings FitPlanner::shape_of(const TargetField& target) {
   ShapeSettings shape = fit_settings(settings_).shape;
   samples_ = fit_.loops.samples;
@@ -347,7 +349,7 @@ ShapeSettings FitPlanner::shape_of(const TargetField& target) {
   return shape;
 }
 
-/// Moves the points of the plan by what is felt, and mends it again, a few times.
+/// Moves the points of the plan by its percept, and mends the paths, kMoveRounds times.
 void FitPlanner::move_felt(const TargetField& target, PlanStats& stats) {
   for (int round = 0; round < kMoveRounds; ++round) {
     LapStarts starts = starts_;
@@ -367,7 +369,7 @@ void FitPlanner::move_felt(const TargetField& target, PlanStats& stats) {
   }
 }
 
-/// Chooses the pressures of plan_ anew by what is felt, as they can be played.
+/// Chooses the pressures of plan_ by its percept, within the limits of the emission.
 void FitPlanner::choose_felt(PlanStats& stats) {
   stats.cost_evaluations +=
       felt_->choose_pressures(plan_.loops, starts_, loop_, settings_.felt_points ? 1 : pieces_,

@@ -18,8 +18,8 @@ namespace prostm::planning {
 /// Settings of the cost that the presets `fast` and `best` minimise.
 FitSettings fit_settings(const PlanSettings& settings);
 
-/// Finds the paths whose field (Eq. 1) is nearest to the target, (P11)–(P15), and where their focal
-/// points start, (P16). Remembers the last plan, so that the next can start from it. Sized once;
+/// Finds the paths whose field (Eq. 1) is nearest to the target, (P11)–(P15), and the starts of
+/// their focal points, (P16). Keeps the last plan, so that the next can start from it.
 /// plan_patch() allocates and throws nothing.
 class FitPlanner {
  public:
@@ -34,7 +34,8 @@ class FitPlanner {
   /// Appends at most `paths` paths to `plan` and adds to `stats` (all but the total).
   /// @param full_scale rendered pressure at full output [unit of the target].
   /// @param budget time limit [s]; 0: only the counts of the settings apply.
-  /// @param is_alone whether no other patch has paths in this plan; patches share one loop.
+  /// @param is_alone whether no other patch has paths in this plan: with several patches, all use
+  /// the same loop.
   /// @pre maximum > 0, full_scale > 0.
   void plan_patch(const TargetField& target, double maximum, double full_scale, int patch,
                   int paths, double budget, bool is_alone, Plan& plan, PlanStats& stats);
@@ -51,9 +52,9 @@ class FitPlanner {
   void step_together(int paths);
   void take_plan(const TargetField& target, int paths);
   void solve(const TargetField& target, int& paths, PlanStats& stats);
-  bool leave_out_silent(int& paths);
+  bool drop_silent(int& paths);
   bool bound_lengths(const TargetField& target, int paths, double share, SpacingRule& rule);
-  int leave_out_long(const TargetField& target, int paths, double least_length);
+  int drop_long(const TargetField& target, int paths, double least_length);
   void choose_starts();
   ShapeSettings shape_of(const TargetField& target);
   void move_felt(const TargetField& target, PlanStats& stats);
@@ -72,21 +73,21 @@ class FitPlanner {
   PlanSettings settings_;
   Search search_;
   Phases phases_;
-  std::unique_ptr<FeltStep> felt_;  // null if what is felt does not count
-  const int pieces_;                // pieces per segment of the search, in a plan
-  Fit fit_;                         // the last plan until the next
+  std::unique_ptr<FeltStep> felt_;  // null if felt_weight is 0
+  const int pieces_;                // pieces of a plan per segment of the search
+  Fit fit_;                         // the last plan; start of the next
   Vec2 origin_ = Vec2::Zero();      // origin of the target that fit_ is for [m]
   bool has_previous_ = false, is_flat_ = false, is_alone_ = true;
-  double last_period_ = 0.0;  // of the last plan's loop [s]
-  double rendered_ = 0.0;     // effective pressure that 1 of fit_ stands for
+  double last_period_ = 0.0;  // period of the last plan's loop [s]
+  double rendered_ = 0.0;     // effective pressure that is 1 in fit_
   double full_scale_ = 0.0;   // rendered pressure at full output
   // scratch
-  int samples_ = 0;                                       // samples of a path of points_
+  int samples_ = 0;                                       // samples per path of points_
   Fit plan_;                                              // fit_ with the samples of the plan
   PlayBounds bounds_ = PlayBounds::all(1.0F, kAnySlope);  // bounds of plan_
   std::array<double, kMaxPaths> factor_{}, length_{}, period_{};  // for each path of plan_
-  LapStarts starts_;                                              // the same
-  CommonLoop loop_;                                               // of plan_, if it is in step
+  LapStarts starts_;                                              // for each path of plan_
+  CommonLoop loop_;                                               // loop of plan_, if in step
   FocalPath flat_;
   std::array<Vec2, kMaxLoopNodes> points_;  // one path after the other [mm]
   SpacingScratch spacing_;

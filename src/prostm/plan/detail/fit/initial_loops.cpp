@@ -12,11 +12,11 @@ namespace {
 constexpr float kRelaxation = 1.5F;  // centres overshoot their means, which saves passes
 
 /// Rounds coordinates below 4 m to multiples of 1/1024 mm. Many cells of a raster are at equal
-/// distances from two centres, which begin at cells and may be the mean of one. With these
-/// multiples such ties are broken alike, whatever the last digits of the raster's geometry and
-/// pressures are, as in copies in single precision.
+/// distances from two centres, since centres begin at cells and may be the mean of a single cell.
+/// Rounding breaks such ties in the same way whatever the last digits of the raster's geometry and
+/// pressures are, e.g. in a single-precision copy of a target.
 float snapped(float millimetres) {
-  constexpr float kCoarse = 12288.0F;  // floats beside it are 1/1024 apart
+  constexpr float kCoarse = 12288.0F;  // floats near it are 1/1024 apart
   return (millimetres + kCoarse) - kCoarse;
 }
 
@@ -27,7 +27,7 @@ void snap(std::span<float> millimetres) {
 }  // namespace
 
 InitialLoops::InitialLoops(std::size_t max_cells) {
-  // with room for a vector behind the last
+  // with room for one vector past the end
   for (std::vector<float>* v : {&x_, &y_, &pressure_}) v->resize(max_cells + 8);
   for (std::vector<float>& v : sorted_) v.resize(max_cells);
   weight_.resize(max_cells);
@@ -57,8 +57,8 @@ void InitialLoops::set(const CellTiles& cells, float weak,
   snap(std::span(y_).first(size_));
 }
 
-/// Weighs cells by the root of their pressure. Stops are then spread farther over weak areas than
-/// with the pressure itself, which renders better (RMSE 3 % lower on the gallery after the same
+/// Weights cells by the square root of their pressure. This spreads more stops over weak areas than
+/// the pressure itself would, which renders better (RMSE 3 % lower on the gallery after the same
 /// descent).
 void InitialLoops::weigh() {
   for (std::size_t i = 0; i < size_; ++i) weight_[i] = std::sqrt(pressure_[i]);
@@ -74,7 +74,7 @@ void InitialLoops::seed(Group group, std::size_t count, Random& random, Centres&
   std::size_t seeds = 0;
   for (std::size_t i = group.begin; i < group.end && seeds < count; ++i) {
     passed += weight_[i];
-    // in a run of heavy cells each is taken once
+    // take each cell at most once, even if several steps fall into it
     if (passed < next && group.end - i > count - seeds) continue;
     cx[seeds] = x_[i];
     cy[seeds] = y_[i];
@@ -98,8 +98,8 @@ void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
     for (auto& half : sums) std::fill_n(half.begin(), count, Moments::Zero());
     nearest_centres({x_.data() + group.begin, cells}, {y_.data() + group.begin, cells},
                     {cx.data(), count}, {cy.data(), count}, {label_.data() + group.begin, cells});
-    // two sets of sums, for alternate cells: neighbours have the same centre, so their additions
-    // would wait for each other
+    // two sets of sums, for alternate cells: neighbours have the same centre, so with one set each
+    // addition would depend on the one before
     for (std::size_t i = 0; i < cells; ++i) {
       sums[i % 2][static_cast<std::size_t>(label_[group.begin + i])] += moments_[i];
     }
@@ -140,14 +140,15 @@ void InitialLoops::sort_by_label(int k, std::array<Group, kMaxPaths>& groups) {
   std::copy_n(sorted_[2].begin(), n, pressure_.begin());
 }
 
-/// Writes the shortest tour found of centres_ as samples, without the stops that do not pay.
+/// Writes the shortest tour found of centres_ as samples, without the stops that cost too much
+/// length for their mass.
 void InitialLoops::tour(const StartSettings& settings, std::span<Vec2> samples) {
   distance_.set(std::span<const Vec2>(centres_.centre.data(), centres_.centre.size()));
   Tour order;
   for (std::size_t c = 0; c < centres_.centre.size(); ++c) {
     if (centres_.mass[c] > 0.0) order.push_back(static_cast<std::uint8_t>(c));
   }
-  // begin with the order of nearest neighbours
+  // initial order: nearest neighbour first
   for (std::size_t i = 0; i + 2 < order.size(); ++i) {
     std::size_t nearest = i + 1;
     for (std::size_t j = i + 2; j < order.size(); ++j) {

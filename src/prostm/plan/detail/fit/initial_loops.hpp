@@ -1,5 +1,5 @@
 #pragma once
-/// Initial paths: the plane is shared out among them jointly, and each tours its own region.
+/// Initial paths: the plane is divided into one region per path, and each path tours its region.
 
 #include <array>
 #include <cstddef>
@@ -17,29 +17,29 @@ namespace prostm::planning {
 /// Settings of one start.
 struct StartSettings {
   int paths = 4;
-  int stops = 16;                          ///< most clusters that a path tours
+  int stops = 16;                          ///< maximum number of clusters in a path's tour
   double most_length = 140;                ///< longest tour [mm]
   int region_passes = 6, stop_passes = 4;  ///< passes of Lloyd's iteration
 };
 
 /// Runs weighted k-means twice: on the cells with pressure for one region per path, then on each
-/// region for its stops. A tour of the stops (2-opt) that is too long leaves out those that cost
-/// most length for their mass. Sized once; make() allocates nothing.
+/// region for its stops. If a tour of the stops (2-opt) is too long, the stops that cost most
+/// length for their mass are dropped. make() allocates nothing.
 class InitialLoops {
  public:
   explicit InitialLoops(std::size_t max_cells);
 
-  /// Takes over the cells whose weighted pressure is at least `weak`, > 0, times the highest. @pre
-  /// some cell that counts has pressure.
+  /// Copies the cells whose weighted pressure is at least `weak`, > 0, times the highest. @pre some
+  /// cell with positive weight has pressure.
   void set(const CellTiles& cells, float weak);
-  /// The same, but only the cells whose closest path is in the set `owners` (a bit each).
+  /// Same, but only the cells whose closest path is in the set `owners` (one bit per path).
   void set(const CellTiles& cells, float weak,
            const std::vector<ReconstructionScratch::TileFit>& fits, int lanes,
            std::uint32_t owners);
-  /// Number of cells taken over.
+  /// Number of cells copied.
   std::size_t size() const { return size_; }
 
-  /// Fills `loops` with as many paths as asked for, or one for each cell if there are fewer cells.
+  /// Fills `loops` with settings.paths paths, or with one per cell if there are fewer cells.
   /// @pre size() > 0.
   void make(const StartSettings& settings, int samples, Random& random, Loops& loops);
 
@@ -58,7 +58,7 @@ class InitialLoops {
   std::size_t size_ = 0;
   std::vector<float> x_, y_, pressure_, weight_, sorted_[3];  // pressure_ is weighted
   std::vector<std::int32_t> label_;
-  std::vector<Moments> moments_;  // for the cells of the group that is clustered
+  std::vector<Moments> moments_;  // for the cells of the group being clustered
   Clusters centres_;
   DistanceTable distance_;
 };

@@ -6,10 +6,10 @@
 namespace prostm::planning {
 namespace {
 
-constexpr float kPairMargin = 4.0F;  // a pair is listed this much before it is too near [mm]
+constexpr float kPairMargin = 4.0F;  // margin by which listed pairs may exceed their distance [mm]
 constexpr float kTiny = 1e-6F;       // [mm]
 
-/// Edges of the loops, with one more sample of each path at either end, so that every edge has both
+/// Edges of the loops, padded by one sample of each path at either end, so that every edge has two
 /// neighbours.
 struct Edges {
   static constexpr std::size_t kCapacity = kMaxLoopNodes + 2 * kMaxPaths;
@@ -53,7 +53,7 @@ float edge_cost(const Loops& loops, const ShapeSettings& settings, NodeArray& gr
   const Edges edge(loops);
   const std::array<float, kMaxPaths> total = sum_by_path(loops, edge.length.data() + lanes);
 
-  // for each path: its mean segment, and how much that is too long or too short
+  // for each path: its mean segment length, and by how much that is too long or too short
   std::array<float, kMaxPaths> mean{}, excess{}, weight{};
   const auto samples = static_cast<float>(loops.samples);
   float cost = 0.0F;
@@ -118,7 +118,7 @@ void SpacedPairs::update(const Loops& loops, const ShapeSettings& settings) {
   listed_y_ = loops.y;
   pairs_.clear();
 
-  // chord that samples of one path should keep per step along it
+  // distance that two samples of one path should keep, per step between them along it
   const Edges edge(loops);
   const auto lanes = static_cast<std::size_t>(loops.lanes);
   const std::array<float, kMaxPaths> total = sum_by_path(loops, edge.length.data() + lanes);

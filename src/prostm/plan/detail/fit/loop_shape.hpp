@@ -18,8 +18,8 @@ struct ShapeSettings {
   std::array<float, kMaxPaths> most_length{};  ///< greatest length of each path
 };
 
-/// Distance that two samples of one path should keep, over their distance along it; a smaller ratio
-/// is a fold. In a circle the ratio is at least 2/π.
+/// Least ratio of the distance between two samples of one path to their distance along it; a
+/// smaller ratio is a fold. In a circle the ratio is at least 2/π.
 inline constexpr float kLeastChord = 0.6F;
 
 /// Two samples to be kept apart; first < second.
@@ -28,7 +28,7 @@ struct SpacedPair {
   float distance;  ///< distance that they should keep [mm]
 };
 
-/// The pairs of non-consecutive samples that are or may soon be too near.
+/// The pairs of non-consecutive samples that are too near or may soon be.
 class SpacedPairs {
  public:
   SpacedPairs();
@@ -36,7 +36,7 @@ class SpacedPairs {
   /// Makes the list valid for `loops`: searches the pairs again when a sample has moved so far that
   /// a pair may be missing. Allocates nothing.
   void update(const Loops& loops, const ShapeSettings& settings);
-  /// Forgets the list: the next update() makes it anew.
+  /// Discards the list; the next update() rebuilds it.
   void clear() { listed_ = false; }
   const std::vector<SpacedPair>& list() const { return pairs_; }
 

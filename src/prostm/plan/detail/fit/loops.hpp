@@ -13,12 +13,12 @@ namespace prostm::planning {
 
 inline constexpr std::size_t kMaxLoopNodes = static_cast<std::size_t>(kMaxPaths) * kMaxPathPoints;
 
-/// One float for each sample of each path. Sample i of path k is at [i·lanes + k], so that a cyclic
-/// neighbour is `lanes` away and a vector holds the same sample of several paths.
+/// One float per sample and path. Sample i of path k is at [i·lanes + k]: cyclic neighbours are
+/// `lanes` apart, and a vector holds the same sample of several paths.
 using NodeArray = std::array<float, kMaxLoopNodes>;
 
-/// Up to `lanes` closed paths of `samples` points each; lanes from `paths` on are not used and stay
-/// as they are.
+/// Up to `lanes` closed paths of `samples` points each. Lanes from `paths` on are unused and keep
+/// their values.
 struct Loops {
   int samples = 0, paths = 0;
   int lanes = 4;            ///< 4 or 8

@@ -7,12 +7,12 @@
 namespace prostm::planning {
 namespace {
 
-constexpr double kAhead = 0.040;       // time for which starts are chosen: until the next plan [s]
+constexpr double kAhead = 0.040;       // horizon of the cost: the time until the next plan [s]
 constexpr float kLeastSquare = 1e-3F;  // added to squared distances so that costs are finite [mm²]
 constexpr int kSearches = 4, kMostSweeps = 20;
 constexpr float kRounding = 1e-5F;  // relative difference of costs that counts as equal
-constexpr double kReach = 6.0;  // largest distance of a start from its loop in the plan before [mm]
-constexpr float kGain = 1.1F;   // gain in distance that justifies new starts
+constexpr double kReach = 6.0;      // largest distance from a kept start to its new loop [mm]
+constexpr float kGain = 1.1F;       // factor in distance that justifies new starts
 
 /// Returns d^−8 for d².
 float nearness(float square) {
@@ -36,7 +36,7 @@ void EvenLap::set(const Loops& loops, int path) {
   }
   reversed = area < 0.0;
 
-  // go through the samples in the order in which they are passed
+  // visit the samples in the order in which the focal point passes them
   const LapStart order{0, reversed};
   const double per_length = length > 0.0 ? arcs / length : 0.0;
   double at = 0.0;
@@ -76,12 +76,12 @@ int EvenLap::nearest_sample(int arc) const {
   return nearest;
 }
 
-/// Computes the costs of focal point a by how many arcs it is ahead of b at the start.
-/// @param gained laps that a gains on b.
+/// Computes the costs of the pair (a, b) as a function of the arcs by which a is ahead of b at the
+/// start. @param gained laps that a gains on b.
 void PhaseCosts::add_pair(const EvenLap& a, const EvenLap& b, double gained, Row& ahead,
                           Row& behind) const {
   const auto n = static_cast<std::size_t>(arcs_);
-  // over one lap of both together
+  // at constant lead: sum over one lap
   Row lap{};
   for (std::size_t i = 0; i < n; ++i) {
     const float* const ax = &a.x[i];
@@ -93,7 +93,7 @@ void PhaseCosts::add_pair(const EvenLap& a, const EvenLap& b, double gained, Row
   }
   std::copy_n(lap.begin(), n, lap.begin() + static_cast<std::ptrdiff_t>(n));
 
-  // while a gains on b
+  // sum over the leads that occur while a gains on b
   Row mean{};
   for (std::size_t moment = 0; moment < n; ++moment) {
     const double laps = (static_cast<double>(moment) + 0.5) / arcs_ * gained;
@@ -141,7 +141,7 @@ void PhaseCosts::descend(std::span<int> arc, std::span<const bool> free) const {
         const float* const from = &row(k, j)[static_cast<std::size_t>(arcs_ - arc[j])];
         for (std::size_t a = 0; a < n; ++a) cost[a] += from[a];
       }
-      // find the index of the minimum only where it is needed: the branches of that search are hard
+      // search the index of the minimum only if needed, since the branches of that search are hard
       // to predict
       float least = cost[0];
       for (std::size_t a = 1; a < n; ++a) least = std::min(least, cost[a]);
@@ -170,8 +170,8 @@ void PhaseCosts::search(std::span<int> arc) const {
   }
 }
 
-/// Finds the start arcs of loops near a start of the last plan, if they keep it; all other loops
-/// are new. @return whether any loop keeps its start.
+/// Finds the arcs of the last plan's starts on the loops near them; all other loops are new.
+/// @return whether there is any such loop.
 bool Phases::find_kept(const Loops& loops, std::span<int> arc, std::span<bool> is_new) const {
   bool any = false;
   for (int k = 0; k < loops.paths; ++k) {

@@ -1,6 +1,6 @@
 #pragma once
-/// Starts and directions of the focal points' laps, chosen so that focal points stay apart while
-/// they run. All lengths in mm.
+/// Starts and directions of the focal points' laps, chosen so that the focal points stay apart.
+/// All lengths in mm.
 
 #include <array>
 #include <boost/container/static_vector.hpp>
@@ -10,12 +10,12 @@
 
 namespace prostm::planning {
 
-/// A loop run counterclockwise from its sample 0, at equal arcs: the positions of a focal point at
-/// equal times.
+/// A loop traversed counterclockwise from its sample 0, resampled at equal arcs: the positions of a
+/// focal point at equal time steps.
 struct EvenLap {
   static constexpr int kMostArcs = 32;
 
-  /// Takes loop `path` of `loops`, at min(samples, kMostArcs) arcs.
+  /// Resamples loop `path` of `loops` at min(samples, kMostArcs) arcs.
   void set(const Loops& loops, int path);
   /// Returns the arc that is nearest to a sample, along the loop.
   int nearest_arc(int sample) const;
@@ -23,8 +23,8 @@ struct EvenLap {
   int nearest_sample(int arc) const;
 
   int samples = 0, arcs = 0;
-  bool reversed = false;  ///< whether it runs against the order of the samples
-  /// Position of each arc, twice round.
+  bool reversed = false;  ///< whether it traverses the samples in descending order
+  /// Position of each arc, for two laps.
   std::array<float, static_cast<std::size_t>(2 * kMostArcs)> x, y;
   std::array<double, kMaxPathPoints> passed;  ///< arcs passed at each sample
 };
@@ -32,7 +32,7 @@ struct EvenLap {
 /// The terms of (P16) for the pairs of up to kMaxPaths focal points.
 class PhaseCosts {
  public:
-  /// Takes the loops. @param periods of the laps [s], > 0.
+  /// Sets the loops. @param periods duration of a lap of each [s], > 0.
   void set(std::span<const EvenLap> laps, std::span<const double> periods);
 
   /// Returns the sum of (P16). @param arc start arc of each focal point, 0..arcs − 1.
@@ -40,7 +40,7 @@ class PhaseCosts {
   /// Moves one focal point at a time as long as that lowers the total.
   /// @param free whether a focal point may be moved.
   void descend(std::span<int> arc, std::span<const bool> free) const;
-  /// Finds the arcs of the least total by descents from several starts.
+  /// Finds the arcs with the least total by descents from several starts.
   void search(std::span<int> arc) const;
 
  private:
@@ -58,13 +58,13 @@ class PhaseCosts {
   std::array<Row, static_cast<std::size_t>(kMaxPaths* kMaxPaths)> rows_;
 };
 
-/// Start and direction of a lap: from sample `first` on, against the order of samples if
+/// Start and direction of a lap: from sample `first` on, in descending order of samples if
 /// `reversed`.
 struct LapStart {
   int first = 0;
   bool reversed = false;
 
-  /// Index of the i-th sample on the way. @pre 0 <= i < samples.
+  /// Index of the i-th sample of the lap. @pre 0 <= i < samples.
   int sample(int i, int samples) const { return (first + (reversed ? samples - i : i)) % samples; }
 };
 using LapStarts = boost::container::static_vector<LapStart, kMaxPaths>;
@@ -75,13 +75,13 @@ class Phases {
  public:
   /// Forgets the starts of the last plan.
   void forget() { before_.clear(); }
-  /// Brings these starts to other coordinates.
+  /// Shifts the coordinates of these starts.
   void move(const Vec2& shift) {
     for (Vec2& x : before_) x += shift;
   }
-  /// Runs all loops counterclockwise, from samples that make the distance of (P16) large. Loops
-  /// near a start of the last plan keep it, unless others gain 10 %.
-  /// @param periods of the laps [s], > 0.
+  /// Chooses counterclockwise laps whose starts make the distance D of (P16) large. Loops near a
+  /// start of the last plan keep it, unless other starts gain 10 %.
+  /// @param periods duration of a lap of each loop [s], > 0.
   LapStarts choose(const Loops& loops, std::span<const double> periods);
 
  private:

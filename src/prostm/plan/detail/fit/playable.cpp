@@ -9,15 +9,15 @@ namespace {
 
 constexpr float kStiffness = 300.0F;  // μ: a pull of 1 leaves a step too large by 1/600
 constexpr float kInner = 0.98F;  // share of a bound where the cost begins, so that the bound holds
-constexpr float kDamping = 1e-3F;  // damping of a system, relative to its diagonal and absolute
-constexpr float kSounds = 1.001F;  // factor on the least √p that sounds, to be above it if rounded
+constexpr float kDamping = 1e-3F;     // damping of a system, relative to its diagonal and absolute
+constexpr float kNotSilent = 1.001F;  // factor on the least non-silent √p, a margin for rounding
 constexpr int kNewtonSteps = 5;
-// (P18) is enforced at the samples, where it is linear in √p as Newton's method needs, or also half
-// way between, since p and not √p is linear along a segment.
+// Where (P18) is enforced: at the samples only, where it is linear in √p, as Newton's method needs;
+// or also half-way between them, since p, not √p, is linear along a segment.
 constexpr float kAtSamples = 0.0F, kHalfWay = 0.5F;
-constexpr float kSettled = 5e-3F;  // change of √p below which the steps end
+constexpr float kSettled = 5e-3F;  // change of √p below which the iteration ends
 
-/// One sample of every path: the lanes of a vector.
+/// One sample of every path, as the lanes of a vector.
 template <int kLanes>
 using Lanes = Eigen::Array<float, kLanes, 1>;
 
@@ -34,14 +34,14 @@ auto lanes_of(const std::array<float, kMaxPaths>& values) {
   return Eigen::Map<const Lanes<kLanes>, Eigen::Aligned16>(values.data());
 }
 
-/// Root of each value. Eigen's own root of vectors is an estimate that differs between processors,
-/// and traps at 0.
+/// Square root of each value. Eigen's own vector square root is an estimate that differs between
+/// processors, and traps at 0.
 template <typename Values>
 auto root_of(const Values& values) {
   return values.unaryExpr([](float value) { return std::sqrt(value); });
 }
 
-/// Calls f<kLanes>() for the lanes of `loops`.
+/// Calls f<kLanes>() with the number of lanes of `loops`.
 template <typename F>
 auto with_lanes(const Loops& loops, const F& f) {
   return loops.lanes == 4 ? f.template operator()<4>() : f.template operator()<8>();
@@ -50,7 +50,7 @@ auto with_lanes(const Loops& loops, const F& f) {
 template <int kLanes>
 class Loop {
  public:
-  /// @param where kAtSamples or kHalfWay. @param share of the slope that may be used.
+  /// @param where kAtSamples or kHalfWay. @param share factor on the slope bounds.
   Loop(const Loops& loops, const PlayBounds& bounds, float where, float share = 1.0F)
       : n_(loops.nodes()), where_(where) {
     const Lanes<kLanes> slope = share * lanes_of<kLanes>(bounds.slope);
@@ -83,22 +83,22 @@ class Loop {
     return (worst > 0.0F).any();
   }
 
-  /// Lowers `root` to the largest values that are nowhere above it and nowhere too steep.
+  /// Lowers `root` to the largest values that do not exceed it and are nowhere too steep.
   void lower(NodeArray& root) const {
     spread(root, [&](const Lanes<kLanes>& value, const Lanes<kLanes>& beside, std::size_t segment) {
       return value.min(above(beside, step(segment))).eval();
     });
   }
 
-  /// Raises `root` to the smallest values that are nowhere below it and nowhere too steep.
+  /// Raises `root` to the smallest values that are not below it and are nowhere too steep.
   void raise(NodeArray& root) const {
     spread(root, [&](const Lanes<kLanes>& value, const Lanes<kLanes>& beside, std::size_t segment) {
       return value.max(below(beside, step(segment))).eval();
     });
   }
 
-  /// Sets `root` half way between lower() and raise(): of all values that are not too steep, those
-  /// whose largest difference from `root` is least.
+  /// Sets `root` to the mean of lower() and raise(): of all values that are not too steep, those
+  /// with the least maximum difference from `root`.
   void flatten(NodeArray& root) const {
     alignas(64) NodeArray raised;
     std::copy_n(root.begin(), n_, raised.begin());
@@ -109,8 +109,9 @@ class Loop {
     }
   }
 
-  /// Raises samples within two of a sounding one to `least`, then others where that is too steep.
-  void sound(const Lanes<kLanes>& least, NodeArray& root) const {
+  /// Raises samples within two of a non-silent one to `least`, then their neighbours where that is
+  /// too steep.
+  void raise_from_silence(const Lanes<kLanes>& least, NodeArray& root) const {
     alignas(64) NodeArray before;
     std::copy_n(root.begin(), n_, before.begin());
     const auto loudest = [&](std::size_t a, std::size_t b) {
@@ -126,17 +127,17 @@ class Loop {
   }
 
  private:
-  /// The highest √p that may lie beside `low`. Between the two, the root of a linear p rises
-  /// fastest beside the lower one: by half way it may rise by half a step.
+  /// Returns the highest √p allowed next to `low`. Between the two, the root of a linear p rises
+  /// fastest near the lower one: up to half-way it may rise by half a step.
   Lanes<kLanes> above(const Lanes<kLanes>& low, const Lanes<kLanes>& step) const {
     return root_of((low + step).square() - where_ * step.square());
   }
-  /// The lowest √p that may lie beside `high`.
+  /// Returns the lowest √p allowed next to `high`.
   Lanes<kLanes> below(const Lanes<kLanes>& high, const Lanes<kLanes>& step) const {
     return (root_of(high.square() + where_ * step.square()) - step).max(0.0F);
   }
-  /// Sets each value to bound(value, its neighbour, the segment between). Goes twice each way
-  /// round, since a loop has no end to start from.
+  /// Sets each value to bound(value, its neighbour, the segment between). Passes twice in each
+  /// direction, since a loop has no end to start from.
   template <typename Bound>
   void spread(NodeArray& root, const Bound& bound) const {
     for (std::size_t k = 0, a = 0; k < 2 * n_; k += kLanes, a = after(a))
@@ -153,18 +154,18 @@ class Loop {
 /// A cyclic tridiagonal system for each lane, positive definite.
 template <int kLanes>
 struct CyclicSystem {
-  alignas(64) NodeArray diagonal, off, right;  // off: coupling to the node after
+  alignas(64) NodeArray diagonal, off, right;  // off: coupling to the next node
   alignas(64) NodeArray last;                  // coupling to the last node during elimination
 
-  /// Keeps a barely definite system definite when it is rounded, and leaves values in place that
-  /// nothing depends on.
+  /// Keeps a nearly singular system positive definite despite rounding, and leaves values unchanged
+  /// that no equation depends on.
   void dampen(std::size_t n) {
     for (std::size_t a = 0; a < n; a += kLanes)
       at<kLanes>(diagonal, a) = (1.0F + kDamping) * at<kLanes>(diagonal, a) + kDamping;
   }
 
-  /// Leaves the solution in `right`. The nodes are eliminated in order; each is coupled to the one
-  /// after it and, round the loop, to the last.
+  /// Solves the system; the solution is in `right`. The nodes are eliminated in order; each is
+  /// coupled to the next one and, across the end of the loop, to the last.
   void solve(std::size_t n) {
     const std::size_t end = n - kLanes, before_end = end - kLanes;
     Lanes<kLanes> coupling = at<kLanes>(off, end), end_diagonal = at<kLanes>(diagonal, end),
@@ -199,7 +200,7 @@ struct CyclicSystem {
 };
 
 /// Sets up the system for a step: gradient and curvature of a quarter of the cost with respect to
-/// √p. Parts of the curvature that may be negative are left out.
+/// √p. Parts of the curvature that may be negative are omitted.
 template <int kLanes>
 void linearise(const Loop<kLanes>& loop, const PressureEquations& equations, const NodeArray& root,
                CyclicSystem<kLanes>& system) {
@@ -231,7 +232,7 @@ void linearise(const Loop<kLanes>& loop, const PressureEquations& equations, con
   }
 }
 
-/// Takes nodes out of the system that are at a bound and pulled beyond it.
+/// Removes nodes from the system that are at a bound and would move beyond it.
 template <int kLanes>
 void hold_at_bounds(const Loop<kLanes>& loop, const Lanes<kLanes>& most, const NodeArray& root,
                     CyclicSystem<kLanes>& system) {
@@ -314,7 +315,7 @@ float steepness_cost(const Loops& loops, const PlayBounds& bounds, const NodeArr
           (root_of(at<kLanes>(pressure, b)) - root_of(at<kLanes>(pressure, a))).abs();
       const Lanes<kLanes> excess = (rise - kInner * slope * length).max(0.0F);
       cost += kStiffness * excess.square();
-      // a longer segment may rise by more
+      // the allowed rise grows with the length of the segment
       const Lanes<kLanes> pull = 2.0F * kStiffness * kInner * slope * excess / length.max(1e-6F);
       at<kLanes>(gradient_x, a) += pull * ex;
       at<kLanes>(gradient_y, a) += pull * ey;
@@ -328,12 +329,12 @@ float steepness_cost(const Loops& loops, const PlayBounds& bounds, const NodeArr
 void make_playable(const Loops& loops, const PlayBounds& bounds, NodeArray& pressure) {
   with_lanes(loops, [&]<int kLanes>() {
     const Loop<kLanes> loop(loops, bounds, kHalfWay);
-    const Lanes<kLanes> least = kSounds * root_of(lanes_of<kLanes>(bounds.least)),
+    const Lanes<kLanes> least = kNotSilent * root_of(lanes_of<kLanes>(bounds.least)),
                         most = root_of(lanes_of<kLanes>(bounds.most));
     alignas(64) NodeArray root;
     loop.take_roots(pressure, root);
     if (loop.is_too_steep(root)) loop.flatten(root);
-    loop.sound((least <= most).select(least, 0.0F), root);
+    loop.raise_from_silence((least <= most).select(least, 0.0F), root);
     for (std::size_t a = 0; a < loop.nodes(); a += kLanes)
       at<kLanes>(pressure, a) = at<kLanes>(root, a).square();
   });

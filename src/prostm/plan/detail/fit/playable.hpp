@@ -1,6 +1,6 @@
 #pragma once
-/// Pressures that the emission can play. Its intensity, √p relative to full output, changes at a
-/// bounded rate (E4), which bounds the slope of √p along a path followed at a given speed.
+/// Pressures within the limits of the emission. The intensity, √p relative to full output, changes
+/// at a bounded rate (E4), which bounds the slope of √p along a path followed at a given speed.
 
 #include <array>
 
@@ -11,13 +11,13 @@ namespace prostm::planning {
 /// A slope bound that never binds.
 inline constexpr float kAnySlope = 1e6F;
 
-/// Bounds of what the emission can play on each path, (P18); pressures over the frame's maximum.
+/// Limits of the emission on each path, (P18); pressures are relative to the frame's maximum.
 struct PlayBounds {
   alignas(32) std::array<float, kMaxPaths> most;   ///< highest pressure
   alignas(32) std::array<float, kMaxPaths> slope;  ///< steepest slope of √p along the path [1/mm]
   alignas(32) std::array<float, kMaxPaths> least;  ///< lowest pressure that is not silent
 
-  /// Makes bounds that are the same for every path.
+  /// Returns the same bounds for every path.
   static PlayBounds all(float most, float slope, float least = 0.0F);
 };
 
@@ -27,7 +27,7 @@ struct PressureEquations {
   alignas(64) NodeArray diagonal, after, right;
 };
 
-/// Moves pressures that are too steep to the minimum, within 0 ≤ p ≤ most, of the equations'
+/// Replaces pressures that are too steep by the minimum, within 0 ≤ p ≤ most, of the equations'
 /// quadratic form plus steepness_cost(). @param pressure on entry, the minimum without that cost.
 void soften(const Loops& loops, const PlayBounds& bounds, const PressureEquations& equations,
             NodeArray& pressure);
@@ -37,9 +37,9 @@ void soften(const Loops& loops, const PlayBounds& bounds, const PressureEquation
 float steepness_cost(const Loops& loops, const PlayBounds& bounds, const NodeArray& pressure,
                      NodeArray& gradient_x, NodeArray& gradient_y);
 
-/// Brings pressures that are too steep, at the samples or half way between, to the nearest that are
-/// not. Also makes samples within two of a sounding one sound: an emission that began later would
-/// lag behind during its whole rise.
+/// Replaces pressures that are too steep, at the samples or half-way between, by the nearest that
+/// are not. Also raises samples within two of a non-silent one above silence: an emission that
+/// began later would lag behind during its whole rise.
 void make_playable(const Loops& loops, const PlayBounds& bounds, NodeArray& pressure);
 
 }  // namespace prostm::planning

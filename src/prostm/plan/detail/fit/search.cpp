@@ -7,19 +7,19 @@
 namespace prostm::planning {
 namespace {
 
-constexpr float kFelt = 0.2F;   // cells with at least this share of the maximum ask for paths
-constexpr double kWidth = 1.5;  // width in σ of the area that a path of full length serves
-constexpr float kLost = 1.4F;   // rise of the cost, over the target's norm, that calls for starts
-constexpr float kPoor = 0.1F;   // cost, over the same norm, above which paths are not worth keeping
-constexpr int kFewestEvaluations = 8;  // fewer are not worth a start, a kick or the fine cells
-// part of a budget that is held back, so that it is not slightly overrun: a share, and at most [s]
+constexpr float kFelt = 0.2F;   // share of the maximum from which a cell needs to be covered
+constexpr double kWidth = 1.5;  // width of the area that a path of full length covers, in σ
+constexpr float kLost = 1.4F;   // factor of cost over the target's norm that triggers new starts
+constexpr float kPoor = 0.1F;   // cost over that norm above which the previous paths are dropped
+constexpr int kFewestEvaluations = 8;  // fewest worth a start, a kick or the fine cells
+// part of a budget kept in reserve against slight overruns: a share, and its maximum [s]
 constexpr double kSpareShare = 0.045, kSpareTime = 2e-4;
-constexpr int kSpare = 2;             // evaluations held back, since their time varies
+constexpr int kSpare = 2;             // evaluations kept in reserve, since their time varies
 constexpr int kLeastEvaluations = 4;  // least evaluations of a start that must be made
 // largest share of a budget for the finish, on finer cells or on those of the search
 constexpr double kFinishShare = 0.35, kSameShare = 0.15;
 constexpr double kLearning = 0.2;
-constexpr double kWarmShare = 0.5;  // largest share of a budget for the paths before
+constexpr double kWarmShare = 0.5;  // largest share of a budget for the previous paths
 constexpr int kFewestStops = 14, kMoreStops = 7;
 
 Vec2 centroid(const Loops& loops, int path) {
@@ -28,13 +28,13 @@ Vec2 centroid(const Loops& loops, int path) {
   return sum / loops.samples;
 }
 
-/// Updates a running mean of times. A single time may include an interruption, so none counts for
-/// more than twice the mean.
-double learnt(double mean, double time) {
+/// Returns a running mean of times, updated by one. A time may include an interruption, so it is
+/// clamped to 0.5 to 2 times the mean.
+double updated_mean(double mean, double time) {
   return mean + kLearning * (std::clamp(time, 0.5 * mean, 2.0 * mean) - mean);
 }
 
-/// Draws another path, nearer ones more often; returns `first` if it is the only path.
+/// Draws another path, with a preference for near ones; returns `first` if it is the only path.
 int draw_neighbour(const Loops& loops, int first, Random& random) {
   const Vec2 from = centroid(loops, first);
   int chosen = first;
@@ -103,8 +103,8 @@ void Search::share_budget() {
   search_end_ = finish_end() - std::min(finish, finish_fine_ ? most : 0.5 * most);
 }
 
-/// Returns the evaluations of a start or a kick that there is time for; 0 if too few to be worth
-/// it.
+/// Returns how many evaluations of a start or a kick the remaining time allows; 0 if too few to be
+/// worthwhile.
 int Search::affordable(int evaluations) const {
   if (budget_ <= 0.0) return evaluations;
   const double left = (search_end_ - timer_.seconds()) / evaluation_time(coarse_);
@@ -120,7 +120,7 @@ int Search::descend(const CellTiles& cells, int evaluations, double end, Fit& fi
   const int used = descent_.run(cells, fit, evaluations, deadline);
   const double each =
       (timer_.seconds() - start) / (used * static_cast<double>(cells.tiles().size()));
-  tile_time_ = learnt(tile_time_, each);
+  tile_time_ = updated_mean(tile_time_, each);
   return used;
 }
 
@@ -134,8 +134,8 @@ StartSettings Search::draw_start(int paths) {
   return start;
 }
 
-/// Returns the number of paths for the area with pressure that counts; more would chase the same
-/// small contact.
+/// Returns the number of paths needed for the area with significant pressure; more would share the
+/// same small contact.
 int Search::needed_paths() const {
   double area = 0.0;
   for (std::size_t t = 0; t < coarse_.tiles().size(); ++t) {
@@ -151,7 +151,7 @@ int Search::needed_paths() const {
   return std::clamp(static_cast<int>(std::ceil(area / served)), 1, kMaxPaths);
 }
 
-/// @param most evaluations of each start.
+/// @param most maximum number of evaluations per start.
 int Search::try_starts(int paths, int starts, int most, float hysteresis, Fit& best) {
   if (starts == 0) return 0;
   int used = 0;
@@ -161,7 +161,7 @@ int Search::try_starts(int paths, int starts, int most, float hysteresis, Fit& b
   for (int start = 0; start < starts; ++start) {
     int evaluations = affordable(most);
     double end = search_end_;
-    // without paths that are worth keeping, one start must be made
+    // if there are no paths worth keeping, at least one start is made
     const bool is_poor =
         start == 0 && best.cost > kPoor * static_cast<float>(coarse_.square_norm());
     if (is_poor && evaluations < kLeastEvaluations) {
@@ -169,7 +169,7 @@ int Search::try_starts(int paths, int starts, int most, float hysteresis, Fit& b
       end = std::numeric_limits<double>::infinity();
     }
     if (evaluations == 0) break;
-    // first with all paths allowed, then with each number that may do
+    // first with the maximum number of paths, then with each number from needed_ up
     const int count = start == 0 ? paths : needed + (start - 1) % (paths - needed + 1);
     initial_.make(draw_start(count), settings_.samples, random_, trial_.loops);
     used += descend(coarse_, evaluations, end, trial_);
@@ -190,7 +190,7 @@ int Search::try_kicks(Fit& best) {
     const int second = random_.below(3) == 0 ? first : draw_neighbour(best.loops, first, random_);
     const int count = first == second ? 1 : 2;
 
-    // lay them anew over the cells that are nearest to them
+    // re-initialise them on the cells that are nearest to them
     descent_.solve(coarse_, best);
     ++used;
     const std::uint32_t owners =
@@ -211,9 +211,9 @@ int Search::try_kicks(Fit& best) {
   return used;
 }
 
-/// Sets `out` to the paths of `from` without the one that is missed least. @return evaluations
+/// Sets `out` to the paths of `from` without the one whose removal costs least. @return evaluations
 /// used.
-int Search::take_away(const Fit& from, Fit& out) {
+int Search::remove_path(const Fit& from, Fit& out) {
   float least = std::numeric_limits<float>::max();
   for (int missing = 0; missing < from.loops.paths; ++missing) {
     copy_without(from.loops, missing, without_.loops);
@@ -225,14 +225,14 @@ int Search::take_away(const Fit& from, Fit& out) {
   return from.loops.paths;
 }
 
-/// If the field asks for fewer paths, takes paths away while that lowers the cost.
+/// If the field needs fewer paths, removes paths while that lowers the cost.
 int Search::try_fewer(Fit& best) {
   int used = 0;
   if (settings_.fewer_evaluations == 0) return used;
   while (best.loops.paths > needed_) {
     const int evaluations = affordable(best.loops.paths + settings_.fewer_evaluations);
     if (evaluations <= best.loops.paths) break;
-    used += take_away(best, trial_);
+    used += remove_path(best, trial_);
     used += descend(coarse_, evaluations - best.loops.paths, search_end_, trial_);
     if (trial_.cost >= best.cost) break;
     best = trial_;
@@ -252,17 +252,17 @@ int Search::run(int paths, bool continues, Fit& best) {
     const int all = affordable(std::numeric_limits<int>::max());
     const int few = std::min(static_cast<int>(kWarmShare * all), all - kFewestEvaluations - kSpare);
     used += descend(coarse_, std::clamp(few, 2, settings_.warm_evaluations), search_end_, best);
-    // if the target has changed more than the paths can follow, start as if there were none. The
-    // cost is not only compared with that of the plan before, or paths could fall behind little by
-    // little
+    // start from scratch if the target has changed more than the paths can follow. The cost is
+    // compared with the least since the last such start, not only with the previous plan's, or a
+    // slow degradation would go undetected
     const bool lost = best.cost > std::min(kLost * reached_, kPoor) * norm;
     if (lost) reached_ = std::numeric_limits<float>::max();
-    // descend as far as the paths that the starts are compared with
+    // as many evaluations as the present paths had, since the starts are compared with these
     const int most = std::max(settings_.start_evaluations, settings_.warm_evaluations);
     const float margin = static_cast<float>(settings_.hysteresis) * best.cost;
     used += try_starts(paths, lost ? settings_.starts : settings_.warm_starts, most, margin, best);
   }
-  // before the kicks, which take the rest of a budget
+  // before the kicks, which use up the rest of a budget
   used += try_fewer(best);
   const float before = best.cost;
   used += try_kicks(best);
@@ -275,7 +275,7 @@ void Search::solve(const PlayBounds& bounds, Fit& fit) {
   ReconstructionSettings& settings = descent_.settings().reconstruction;
   const ReconstructionSettings searched = settings;
   settings.bounds = bounds;
-  // the same smoothing for the same length of path
+  // keep the smoothing per length of path constant
   settings.smoothing *=
       static_cast<float>(fit.loops.samples) / static_cast<float>(settings_.samples);
   descent_.solve(fine(), fit);
@@ -283,8 +283,8 @@ void Search::solve(const PlayBounds& bounds, Fit& fit) {
 }
 
 void Search::learn_ending(double seconds) {
-  ending_deviation_ = learnt(ending_deviation_, std::abs(seconds - ending_time_));
-  ending_time_ = learnt(ending_time_, seconds);
+  ending_deviation_ = updated_mean(ending_deviation_, std::abs(seconds - ending_time_));
+  ending_time_ = updated_mean(ending_time_, seconds);
 }
 
 int Search::finish(const std::array<float, kMaxPaths>& most_length, Fit& fit) {

@@ -11,9 +11,9 @@ namespace prostm::planning {
 namespace {
 
 constexpr int kRounds = 60;         // rounds of pushing apart
-constexpr double kPushGoal = 1.02;  // samples are pushed to this times the spacing
-constexpr double kSlack = 0.7;  // distance that samples move before near pairs are listed anew [mm]
-constexpr double kRounding = 1e-4;  // share of a distance, far more than single precision costs
+constexpr double kPushGoal = 1.02;  // distance that samples are pushed to, over the spacing
+constexpr double kSlack = 0.7;      // move of a sample after which near pairs are listed again [mm]
+constexpr double kRounding = 1e-4;  // relative margin, far above single-precision rounding
 
 using Loop = std::span<Vec2>;
 using ConstLoop = std::span<const Vec2>;
@@ -41,8 +41,9 @@ struct Measures {
   }
 };
 
-/// Calls visit(a, b, distance) for the pairs of samples that count and are nearer than `reach`.
-/// visit may move the samples; pairs that this brings near enough are for the next time.
+/// Calls visit(a, b, distance) for the pairs of samples that the rule covers and that are nearer
+/// than `reach`. visit may move the samples; pairs that become near by this are left to the next
+/// call.
 template <typename Visit>
 void for_near_pairs(ConstLoop x, std::size_t n, double reach, double along, NearSamples& near,
                     const Visit& visit) {
@@ -60,7 +61,7 @@ void for_near_pairs(ConstLoop x, std::size_t n, double reach, double along, Near
   for (std::size_t i = 0; i < near.across().size(); ++i) visit_if_near(near.across()[i]);
 }
 
-/// Whether any segments that are not neighbours cross. The middles of two crossing segments are at
+/// Returns whether any non-adjacent segments cross. The midpoints of two crossing segments are at
 /// most half the sum of their lengths apart.
 bool has_crossings(ConstLoop x, std::size_t n, NodePairs& near) {
   alignas(64) NodeArray middle_x{}, middle_y{};
@@ -96,8 +97,7 @@ bool is_valid(ConstLoop x, std::size_t n, const SpacingRule& rule, SpacingScratc
   return are_apart(x, static_cast<int>(n), rule, scratch) && !has_crossings(x, n, scratch.segments);
 }
 
-/// Moves samples that are too near away from each other, until no pair is too near or the rounds
-/// end.
+/// Pushes samples that are too near apart, until no pair is too near or for kRounds rounds.
 void push_apart(Loop x, std::size_t n, const SpacingRule& rule, SpacingScratch& scratch) {
   const double goal = kPushGoal * rule.spacing;
   for (int round = 0; round < kRounds; ++round) {
@@ -105,7 +105,7 @@ void push_apart(Loop x, std::size_t n, const SpacingRule& rule, SpacingScratch& 
     for_near_pairs(x, n, goal, rule.along, scratch.samples,
                    [&](std::size_t a, std::size_t b, double distance) {
                      any = any || distance < rule.spacing;
-                     // coinciding samples part along x
+                     // coinciding samples are separated along x
                      const Vec2 way =
                          distance > 1e-6 ? Vec2((x[b] - x[a]) / distance) : Vec2(1.0, 0.0);
                      const Vec2 push = 0.5 * (goal - distance) * way;
@@ -119,7 +119,7 @@ void push_apart(Loop x, std::size_t n, const SpacingRule& rule, SpacingScratch& 
   }
 }
 
-/// Keeps the paths that are valid together with those before, as they are or as circles.
+/// Keeps the paths that are valid together with those already kept, unchanged or as circles.
 std::size_t keep_valid(Loop x, std::size_t n, SpacingRule rule, SpacingScratch& scratch) {
   std::size_t kept = 0;
   for (std::size_t begin = 0; begin < x.size(); begin += n) {
@@ -160,10 +160,10 @@ void NearSamples::list(std::span<const Vec2> x, std::size_t n, double reach, dou
     rough_x[i] = static_cast<float>(x[i].x() - x[0].x());
     rough_y[i] = static_cast<float>(x[i].y() - x[0].y());
   }
-  // both samples may move by the slack, and the next reach may be larger by it
+  // margin: both samples may move by the slack, and the next reach may be larger by it
   across_.set(rough_x, rough_y, x.size(),
               static_cast<float>((reach + 3.0 * kSlack) * (1.0 + kRounding)));
-  // neighbours on a path stay neighbours: each segment between may grow by the slack at both ends
+  // distances along a path change, too: each segment between may grow by the slack at both ends
   const Measures measured(x, n);
   own_.clear();
   across_.filter([&](const NodePair& pair) {

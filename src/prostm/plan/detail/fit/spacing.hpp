@@ -1,5 +1,5 @@
 #pragma once
-/// Distances between the samples of a plan's paths, and paths made to keep them. All lengths in mm.
+/// Minimum distances between the samples of a plan's paths. All lengths in mm.
 
 #include <array>
 #include <span>
@@ -13,17 +13,17 @@ namespace prostm::planning {
 
 /// Bounds that a valid set of paths keeps.
 struct SpacingRule {
-  /// Least distance of two samples on different paths, or of two on one path that are farther than
-  /// `along` apart along it.
+  /// Least distance of two samples that are on different paths, or more than `along` apart along
+  /// the same path.
   double spacing = 0.0;
   double along = 0.0;
   std::array<double, kMaxPaths> most_length{};  ///< greatest length of each path
-  /// Length of the circle that replaces a path which cannot be mended, but at most most_length.
+  /// Length of the circle that replaces a path that cannot be mended, at most most_length.
   double least_length = 0.0;
 };
 
-/// The pairs of samples that are near each other, listed with a margin so that the list serves
-/// while the samples move a little. Sized once.
+/// The pairs of samples that are near each other, listed with a margin, so that the list stays
+/// valid while the samples move a little.
 class NearSamples {
  public:
   NearSamples() { listed_at_.reserve(kMaxLoopNodes); }
@@ -59,9 +59,9 @@ int count_near_pairs(std::span<const Vec2> x, int samples, const SpacingRule& ru
 bool are_apart(std::span<const Vec2> x, int samples, const SpacingRule& rule,
                SpacingScratch& scratch);
 
-/// Makes paths keep the rule, simple and free of crossings. Samples that are too near push each
-/// other apart. If that fails, a path is replaced by a circle about its centroid or left out; the
-/// first paths of `x` stay as they are if they can. The kept paths are moved to the front. @return
+/// Makes the paths simple, free of crossings, and spaced as the rule requires. Samples that are too
+/// near are pushed apart. If that fails, a path is replaced by a circle about its centroid or
+/// dropped; earlier paths of `x` take precedence. The kept paths are moved to the front. @return
 /// the number of paths kept, at least one.
 int make_spaced(std::span<Vec2> x, int samples, const SpacingRule& rule, SpacingScratch& scratch);
 

@@ -6,12 +6,13 @@
 namespace prostm::planning {
 namespace {
 
-constexpr double kArmijo = 1e-4;     // share of the linear decrease that a step must reach
-constexpr double kFirstStep = 0.05;  // inverse of the length term's largest curvature, about [mm²]
+constexpr double kArmijo = 1e-4;  // share of the linear decrease that a step must reach
+constexpr double kFirstStep =
+    0.05;  // about the inverse of the length term's largest curvature [mm²]
 constexpr double kLargestStep = 1e3;     // keeps trials finite where the cost is flat [mm²]
 constexpr double kSmallestStep = 1e-10;  // a line search ends here at a minimum, or at a kink
 constexpr double kTolerance = 1e-7;      // relative decrease of the cost that counts as converged
-constexpr double kPairSlack = 2.0;  // near pairs are listed anew once a sample moves this far [mm]
+constexpr double kPairSlack = 2.0;  // move of a sample after which near pairs are listed again [mm]
 
 double squared_norm(std::span<const Vec2> v) {
   double sum = 0.0;
@@ -60,10 +61,10 @@ double Refiner::evaluate(const PressureRaster& raster, std::span<const Vec2> x,
          bending_cost(paths, costs_.bending, gradient);
 }
 
-// The paper leaves the first trial of its line search open. Here it is the Barzilai-Borwein step
-// s·s / s·y (s the last change of x, y that of the gradient), the inverse of the curvature met last
-// [Barzilai and Borwein 1988]: steepest descent with it needs a fraction of the steps that doubling
-// and halving the last one does.
+// The paper does not specify the first trial of its line search. Here it is the Barzilai-Borwein
+// step s·s / s·y (s the last change of x, y that of the gradient), the inverse of the last
+// curvature along a step [Barzilai and Borwein 1988]. Steepest descent with it needs a fraction of
+// the steps that doubling and halving the last step needs.
 RefineResult Refiner::run(const PressureRaster& raster, std::span<Vec2> x) {
   for (std::vector<Vec2>* v : {&gradient_, &trial_, &trial_gradient_}) v->resize(x.size());
   RefineResult result;

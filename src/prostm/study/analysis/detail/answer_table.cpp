@@ -34,7 +34,7 @@ std::string lines_text(const std::vector<int>& lines) {
   return out;
 }
 
-/// Names that stand in a column with and without white space around them.
+/// Names in a column that appear both with and without white space around them.
 class Trims {
  public:
   void add(const std::string& name, const std::string& written) { written_[name].insert(written); }
@@ -46,8 +46,8 @@ class Trims {
     }
     if (names.empty()) return;
     notes.push_back(
-        fmt::format("{}: {} {}: written with and without white space around it, and taken "
-                    "as one.",
+        fmt::format("{}: {} {}: written with and without white space around it; treated as "
+                    "one name.",
                     file, column, names));
   }
 
@@ -71,7 +71,7 @@ class TableReader {
  private:
   struct Row {
     int line = 0;
-    std::size_t hash = 0;  // of all of its cells
+    std::size_t hash = 0;  // of all cells
     std::vector<std::string> cells;
   };
 
@@ -101,7 +101,7 @@ class TableReader {
 
   const std::string& file_;
   CsvReader csv_;
-  bool header_quoted_ = false, adjusted_ = false;  // whether the kind is Adjusted
+  bool header_quoted_ = false, adjusted_ = false;  // adjusted_: the kind is Adjusted
   NumberColumn levels_, times_;
   std::vector<std::string>& notes_;
   ColumnPlaces places_;
@@ -110,8 +110,8 @@ class TableReader {
   std::optional<AnswerKind> all_of_;
   std::map<Column, Trims> trims_;
   std::map<std::pair<std::string, std::string>, std::set<std::size_t>> trials_;
-  std::set<std::string> repeating_;  // participants whose trial numbers repeat
-  std::vector<int> no_trials_;       // lines
+  std::set<std::string> repeating_;  // participants with repeated trial numbers
+  std::vector<int> no_trials_;       // line numbers of rows that are not trials
 };
 
 std::vector<std::string> TableReader::header() {
@@ -121,7 +121,7 @@ std::vector<std::string> TableReader::header() {
   return row;
 }
 
-/// Makes a row as long as the header. R writes names of rows without a header, in quotes.
+/// Makes a row as long as the header. R writes quoted row names without a header.
 void TableReader::fit_to_header(std::vector<std::string>& row) const {
   const std::size_t wanted = places_.size();
   const auto is_blank = [](const std::string& cell) { return trimmed(cell).empty(); };
@@ -129,7 +129,7 @@ void TableReader::fit_to_header(std::vector<std::string>& row) const {
       row.size() == wanted + 1 && header_quoted_ && csv_.began_quoted() && !is_blank(row.back());
   if (has_row_name) row.erase(row.begin());
   while (row.size() > wanted && is_blank(row.back())) row.pop_back();
-  std::size_t needed = 0;  // cells that are read
+  std::size_t needed = 0;  // number of cells that are read
   for (std::size_t i = 0; i < kColumns; ++i) {
     if (const auto place = places_.place(static_cast<Column>(i)))
       needed = std::max(needed, *place + 1);
@@ -147,13 +147,14 @@ void TableReader::read_rows() {
     std::size_t hash = 0;
     for (const std::string& cell : cells) hash = 31 * hash + std::hash<std::string>()(cell);
     const auto is_blank = [](const std::string& cell) { return trimmed(cell).empty(); };
-    if (std::all_of(cells.begin(), cells.end(), is_blank)) continue;  // as spreadsheets leave them
+    if (std::all_of(cells.begin(), cells.end(), is_blank))
+      continue;  // empty rows left by spreadsheets
     fit_to_header(cells);
     rows_.push_back({csv_.line(), hash, cells});
   }
 }
 
-/// Leaves out columns that have the name of one of ours and hold something else.
+/// Ignores columns that have one of our names but hold something else.
 void TableReader::choose_columns() {
   std::set<std::string> scenes, questions;
   bool has_response = false;
@@ -190,8 +191,8 @@ bool TableReader::has_answer(const Row& row) const {
   return true;
 }
 
-/// Whether a row is of an instruction, a break or another routine: it has no condition, or neither
-/// an answer nor a whole condition.
+/// Whether a row belongs to an instruction, a break or another routine: it has no condition, or
+/// neither an answer nor a complete condition.
 bool TableReader::is_no_trial(const Row& row, bool answered) {
   int missing = 0, of = 0;
   for (const Column column : {Column::Method, Column::Scene}) {
@@ -208,7 +209,7 @@ std::string TableReader::name(const Row& row, Column column) {
   if (is_missing_name(value)) fail(row, std::string(name_of(column)) + " is empty");
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
   if (std::any_of(value.begin(), value.end(), is_control))
-    fail(row, std::string(name_of(column)) + " has a line break or another control character");
+    fail(row, std::string(name_of(column)) + " contains a line break or another control character");
   if (const auto place = places_.place(column)) trims_[column].add(value, row.cells[*place]);
   return value;
 }
@@ -216,12 +217,12 @@ std::string TableReader::name(const Row& row, Column column) {
 bool TableReader::yes(const Row& row, Column column) const {
   const std::string value = text(column, row);
   if (const auto is_yes = yes_or_no(value)) return *is_yes;
-  fail(row, fmt::format("{} is {}: it must be 0 or 1, true or false, yes or no", name_of(column),
+  fail(row, fmt::format("{} is {}: it must be 0 or 1, true or false, or yes or no", name_of(column),
                         in_quotes(value)));
 }
 
 double TableReader::level(const Row& row) {
-  constexpr double kLeast = 1e-9, kMost = 1e9;  // so that what is fitted stays finite
+  constexpr double kLeast = 1e-9, kMost = 1e9;  // so that fits stay finite
   const std::string value = text(Column::Level, row);
   std::string problem = "must be a number in every row, 0 or from 1e-9 to 1e9 in size";
   std::string why;
@@ -236,9 +237,9 @@ AnswerKind TableReader::kind(const Row& row) {
   const auto kind = value_named<AnswerKind>(value);
   if (!kind) fail(row, "kind " + must_be(value, kNames<AnswerKind>));
   if (*kind != AnswerKind::Right && !has(Column::Level))
-    fail(row, "kind is \"" + value + "\", and the header has no column \"level\"");
+    fail(row, "kind is \"" + value + "\", but the header has no column \"level\"");
   if (all_of_.value_or(*kind) != *kind)
-    fail(row, "kind is \"" + value + "\", and another one in the rows before");
+    fail(row, "kind is \"" + value + "\", but earlier rows have another kind");
   all_of_ = kind;
   return *kind;
 }
@@ -254,13 +255,13 @@ void TableReader::read_question(const Row& row, Answer& out) const {
                    out.correct ? "wrong" : "right", in_quotes(out.scene)));
 }
 
-/// Refuses a row that was copied: the same in all cells, its trial's number included.
+/// Refuses a copied row: equal in all cells, including the trial number.
 void TableReader::check_trial(const Row& row, const Answer& answer) {
   if (answer.trial.empty()) return;
   auto& same = trials_[{answer.participant, answer.trial}];
   if (!same.insert(row.hash).second) {
-    fail(row, fmt::format("participant {} has trial {} a second time",
-                          in_quotes(answer.participant), shown_name(answer.trial)));
+    fail(row, fmt::format("participant {} has trial {} twice", in_quotes(answer.participant),
+                          shown_name(answer.trial)));
   }
   if (same.size() > 1) repeating_.insert(answer.participant);
 }
@@ -307,9 +308,9 @@ void TableReader::write_notes() {
                     file_, no_trials_.size(), rows_.size(), lines_text(no_trials_)));
   }
   if (!repeating_.empty()) {
-    notes_.push_back(fmt::format(
-        "{}: numbers of trials repeat for participant {}{}, and are not used there.", file_,
-        in_quotes(*repeating_.begin()), repeating_.size() > 1 ? " and others" : ""));
+    notes_.push_back(
+        fmt::format("{}: trial numbers repeat for participant {}{} and are ignored there.", file_,
+                    in_quotes(*repeating_.begin()), repeating_.size() > 1 ? " and others" : ""));
   }
 }
 
@@ -330,7 +331,7 @@ std::vector<Answer> TableReader::read() {
   }
   const auto is_answered = [](const Answer& a) { return a.answered; };
   if (std::none_of(out.begin(), out.end(), is_answered))
-    throw InputError(file_ + ": has a header and no answer");
+    throw InputError(file_ + ": has a header but no answers");
   for (Answer& a : out) {
     a.kind = all_of_.value_or(AnswerKind::Right);
     if (repeating_.contains(a.participant)) a.trial.clear();

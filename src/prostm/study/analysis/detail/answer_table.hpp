@@ -1,5 +1,5 @@
 #pragma once
-/// Answers from tables of separated values.
+/// Reads answers from tables of separated values.
 
 #include <string>
 #include <string_view>
@@ -9,9 +9,9 @@
 
 namespace prostm::study {
 
-/// Reads a table in UTF-8. @param columns as column_map() reads it. @param notes gets sentences
-/// about what was left out or taken as something else.
-/// @throws InputError as answers_from_csv() does.
+/// Reads a table in UTF-8. @param columns as for column_map(). @param notes receives sentences
+/// about rows and values that were skipped or reinterpreted. @throws InputError as
+/// answers_from_csv().
 std::vector<Answer> read_answer_table(std::string_view text, const std::string& file,
                                       const std::string& columns, std::vector<std::string>& notes);
 

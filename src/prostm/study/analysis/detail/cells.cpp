@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, 14> kNo = {"0",     "false",     "no",   
                                                   "wrong", "incorrect", "falsch", "nein", "faux",
                                                   "non",   "falso",     "onwaar", "nee"};
 
-/// Whether a number with one comma may have it between thousands: "1,250".
+/// Whether the only comma of a number may be a thousands separator: "1,250".
 bool may_group_thousands(std::string_view cell) {
   if (cell.starts_with('-')) cell.remove_prefix(1);
   const std::size_t comma = cell.find(',');
@@ -60,7 +60,9 @@ std::optional<double> NumberColumn::read(std::string_view cell, std::string& pro
   const auto commas = std::count(text.begin(), text.end(), ',');
   const char mark = commas == 1 ? ',' : text.find('.') != std::string::npos ? '.' : '\0';
   if (mark == ',' && separator_ != ';' && may_group_thousands(text))
-    return fail("may be a fraction or thousands; write it with a decimal point");
+    return fail(
+        "is ambiguous: the comma may be decimal or separate thousands; write it with a decimal "
+        "point");
   if (mark == ',') text[text.find(',')] = '.';
   double value = 0.0;
   const char *begin = text.data() + (text.starts_with('+') ? 1 : 0),
@@ -69,7 +71,7 @@ std::optional<double> NumberColumn::read(std::string_view cell, std::string& pro
   if (error != std::errc() || at != end || begin == end || !std::isfinite(value))
     return fail("must be a number");
   if (mark != '\0' && mark_ != '\0' && mark != mark_)
-    return fail("has another decimal mark than the rows before");
+    return fail("has another decimal mark than earlier rows");
   if (mark != '\0') mark_ = mark;
   return value + 0.0;  // −0 becomes 0
 }

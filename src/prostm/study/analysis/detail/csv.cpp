@@ -68,7 +68,7 @@ std::string CsvReader::quoted() {
     }
     skip_blanks();
     if (at_value_end()) return value;
-    fail("a quoted value goes on after its closing quote");
+    fail("a quoted value continues after its closing quote");
   }
   fail("a quote is not closed; the file may be cut off");
 }
@@ -78,7 +78,7 @@ std::string CsvReader::plain() {
   for (; !at_value_end(); ++at_) {
     const auto byte = static_cast<unsigned char>(text_[at_]);
     if (byte == '"') fail("a quote stands inside a value that does not begin with one");
-    if (byte < 0x20 && byte != '\t') fail("has a control character, so this is no text");
+    if (byte < 0x20 && byte != '\t') fail("has a control character, so this is not a text file");
   }
   return std::string(text_.substr(begin, at_ - begin));
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Rows of separated values: RFC 4180 with any separator.
+/// Reads rows of separated values: RFC 4180 with any separator.
 
 #include <string>
 #include <string_view>
@@ -8,22 +8,22 @@
 namespace prostm::study {
 
 /// Reads a text row by row. Empty lines are skipped; lines end in LF, CRLF or CR. Blanks around a
-/// quoted value are no part of it.
+/// quoted value are ignored.
 class CsvReader {
  public:
   /// @param text without a byte order mark. @param file names the text in messages. Both must
   /// outlive the reader.
   CsvReader(std::string_view text, const std::string& file, char separator = ',');
 
-  /// Puts the next row's values in place of `row`; false after the last. @throws InputError: a
-  /// quote that is not closed or stands inside a value, a byte of no text.
+  /// Replaces `row` by the values of the next row; false after the last. @throws InputError: an
+  /// unclosed quote, a quote inside a value, a control character.
   bool next(std::vector<std::string>& row);
 
-  /// Throws "<file>, line <n>: <problem>" about the row that was read last.
+  /// Throws "<file>, line <n>: <problem>" about the last row read.
   [[noreturn]] void fail(const std::string& problem) const;
 
-  int line() const { return line_; }  ///< of the row that was read last, from 1
-  /// Whether the first value of that row stood in quotes.
+  int line() const { return line_; }  ///< line of the last row read, from 1
+  /// Whether the first value of the last row was quoted.
   bool began_quoted() const { return began_quoted_; }
   char separator() const { return separator_; }
 

@@ -16,7 +16,7 @@
 namespace prostm::study {
 namespace {
 
-/// Names of answers that mean the same kind of thing.
+/// A kind of names in answers.
 struct NameKind {
   const char* name;
   std::vector<std::string Answer::*> members;
@@ -28,7 +28,7 @@ const std::vector<NameKind>& name_kinds() {
   return kinds;
 }
 
-/// Names in the order in which they come first; names that are not known are left out.
+/// Names in order of first appearance, without unknown names.
 std::vector<std::string> names_of(std::span<const Answer> answers, const NameKind& kind) {
   std::vector<std::string> out;
   std::set<std::string_view> known;
@@ -60,7 +60,7 @@ Parts parts_of(const std::string& path, IdPrefix prefix) {
   return out;
 }
 
-/// Takes away the last part while all have the same and each keeps one.
+/// Removes the last part as long as all share it and each keeps at least one part.
 void strip_common_ends(std::vector<Parts>& all) {
   const auto goes = [&](const Parts& parts) {
     return parts.size() > 1 && parts.back() == all.front().back();
@@ -130,12 +130,12 @@ void settle_spellings(std::vector<Answer>& answers, bool merge, std::vector<std:
     if (!merge) {
       const auto& [name, first] = *others.begin();
       throw InputError(fmt::format(
-          "{} differ in spelling alone; if each pair is one {}, add --merge-spellings; if not, "
-          "give one of them another name, as --rename \"{}:{}={}-b\"",
+          "{} differ only in spelling; if each pair is one {}, add --merge-spellings; if not, "
+          "rename one of them, e.g. --rename \"{}:{}={}-b\"",
           what, kind.name, kind.name, name, name));
     }
     notes.push_back(
-        fmt::format("The {} differ in spelling alone, and each pair is taken as one.", what));
+        fmt::format("The {} differ only in spelling; each pair is treated as one.", what));
     replace(answers, kind, others);
   }
 }

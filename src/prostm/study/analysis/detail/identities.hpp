@@ -1,5 +1,5 @@
 #pragma once
-/// Who and what the names of answers mean: participants, methods and scenes.
+/// Resolves names of participants, methods and scenes in answers.
 
 #include <span>
 #include <string>
@@ -10,17 +10,17 @@
 
 namespace prostm::study {
 
-/// Returns for each path what tells it from the others: the parts of its folder's path, or of its
-/// own without its ending, that not all have in common at the beginning and at the end.
+/// Returns the distinguishing part of each path: the path of its folder, or its own without
+/// extension, minus the leading and trailing parts common to all.
 std::vector<std::string> distinct_parts(std::span<const std::string> paths, IdPrefix prefix);
 
-/// Gives names other names. @param renames "participant:OLD=NEW", also of methods and scenes.
-/// @throws InputError: no such form or no such name.
+/// Renames. @param renames "participant:OLD=NEW", or with method: or scene:. @throws InputError:
+/// another form, or no such name.
 void rename(std::vector<Answer>& answers, std::span<const std::string> renames);
 
-/// Finds participants, methods and scenes whose names differ in spelling alone (spelling_key()).
-/// @param merge they are one, with the name that comes first, and a note. @throws InputError: there
-/// are such names, and merge is false.
+/// Finds participants, methods and scenes whose names differ only in spelling (spelling_key()).
+/// @param merge treat them as one, under the first name, with a note. @throws InputError: there are
+/// such names, and merge is false.
 void settle_spellings(std::vector<Answer>& answers, bool merge, std::vector<std::string>& notes);
 
 }  // namespace prostm::study

@@ -14,7 +14,7 @@
 namespace prostm::study {
 namespace {
 
-/// The kind of the answers to a protocol, as the first line of a participant's file has it.
+/// The kind of the answers, from the protocol in the first line of a participant's file.
 AnswerKind kind_of(const ResponseLine& protocol, Tasks tasks, const std::string& file) {
   const auto trials = protocol.value("trials", ResponseLine::object());
   const auto level = protocol.value("level", ResponseLine::object());
@@ -63,14 +63,14 @@ RunFacts facts_of(const ResponseLine& first) {
           text_in(run, "hand")};
 }
 
-/// Adds the trial of a line, or corrects the last one.
+/// Adds the trial of a line, or corrects the last trial.
 void take_line(const ResponseLine& line, const std::string& where, AnswerKind of, Responses& out) {
   const std::string kind = line.value(line::kKind, "");
   if (kind == line::kTrial) {
     out.answers.push_back(answer_of(line, out.file.participant, of));
   } else if (out.answers.empty() ||
              out.answers.back().trial != std::to_string(line.at(line::kTrial).get<int>())) {
-    throw InputError(where + " corrects another trial than the last");
+    throw InputError(where + " corrects a trial that is not the last");
   }
   if (of == AnswerKind::Adjusted) return;
   Answer& answer = out.answers.back();
@@ -87,7 +87,8 @@ Responses read_responses(std::string_view text, const std::string& file, Tasks t
   std::string where = file + ", line 1";
   try {
     if (lines.empty() || lines.front().value(line::kFormat, "") != kResponseFormat)
-      throw InputError(where + " does not begin a participant's file of prostm study run");
+      throw InputError(where +
+                       " is not the first line of a participant's file of prostm study run");
     const ResponseLine& first = lines.front();
     out.file = {first.at(line::kParticipant), first.value(line::kProtocol, ResponseLine::object()),
                 first.at(line::kRun).at("rehearsal")};
@@ -109,7 +110,7 @@ Responses read_responses(std::string_view text, const std::string& file, Tasks t
     throw InputError(fmt::format("{}: {}", where, error.what()));
   }
   if (out.file.rehearsal)
-    notes.push_back(file + " is a rehearsal: nobody felt anything, and answers are made up.");
+    notes.push_back(file + " is a rehearsal: nobody felt anything, and the answers are simulated.");
   if (!out.ended && static_cast<int>(out.answers.size()) < out.trials) {
     notes.push_back(fmt::format("Participant {} gave {} of {} answers ({}).", out.file.participant,
                                 out.answers.size(), out.trials, file));

@@ -1,5 +1,5 @@
 #pragma once
-/// Answers in participants' files.
+/// Reads answers from participants' files.
 
 #include <string>
 #include <string_view>
@@ -11,18 +11,17 @@
 
 namespace prostm::study {
 
-/// A participant's file: answers, and what they are compared by.
+/// A participant's file: its answers, and data for comparing stimuli.
 struct Responses {
   std::vector<Answer> answers;
   StudyFile file;
-  int trials = 0;  ///< that the protocol has
+  int trials = 0;  ///< number of trials in the protocol
   bool ended = false;
 };
 
-/// Reads a participant's file. @param tasks those whose names are known. @param notes gets
-/// sentences about rehearsals, strengths, and trials without answers. @throws InputError: what
-/// responses_from_text() throws; no first line of a study, a task that is not known, a trial
-/// without its values.
+/// Reads a participant's file. @param tasks the known tasks. @param notes receives sentences about
+/// rehearsals, strengths, and trials without answers. @throws InputError: as responses_from_text();
+/// a first line that is not a study's, an unknown task, a trial with missing values.
 Responses read_responses(std::string_view text, const std::string& file, Tasks tasks,
                          std::vector<std::string>& notes);
 

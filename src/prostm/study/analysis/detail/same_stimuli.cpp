@@ -28,7 +28,7 @@ std::string participants_text(const Names& names) {
   return out;
 }
 
-/// Participants by a value that a study gave them.
+/// Participants by value of a setting.
 using ByValue = std::map<std::string, Names>;
 
 /// "\"fast\" (participants 1, 2) and \"best\" (participants 3, 4)".
@@ -44,8 +44,8 @@ std::string values_text(const ByValue& values) {
 /// Settings of the run that do not change a stimulus.
 constexpr std::array kNotTheStimulus = {"/pipeline/threads", "/pipeline/tracker"};
 
-/// The values of each key of a part of the protocols, where they differ. A key that a protocol
-/// lacks has the value "not given".
+/// The keys of a part of the protocols whose values differ, with these values. A missing key has
+/// the value "not given".
 std::map<std::string, ByValue> differences(std::span<const StudyFile> files,
                                            const Json::json_pointer& part) {
   std::vector<std::pair<const StudyFile*, std::map<std::string, std::string>>> flat;
@@ -78,7 +78,7 @@ std::string dotted(std::string key) {
   return key;
 }
 
-/// The first differences, and how many more there are.
+/// Describes the first differences, and the number of others.
 std::string text_of(const std::map<std::string, ByValue>& found, const std::string& prefix) {
   constexpr std::size_t kMostShown = 3;
   std::string out;
@@ -103,7 +103,7 @@ std::set<std::string> methods_of(std::span<const StudyFile> files) {
   return out;
 }
 
-/// Differences of what was presented, as a text; empty if there is no difference.
+/// Describes differences between the stimuli of files; empty if they agree.
 std::string stimuli_of_files(std::span<const StudyFile> files) {
   std::string out;
   const auto add = [&](std::map<std::string, ByValue> found, const std::string& prefix) {
@@ -124,7 +124,7 @@ std::string stimuli_of_files(std::span<const StudyFile> files) {
   return out;
 }
 
-/// The same by the checksums of tables, whose settings are not known.
+/// Describes differences between the checksums in tables, whose settings are unknown.
 std::string stimuli_of_answers(std::span<const Answer> answers) {
   std::map<std::tuple<std::string, std::string, std::optional<double>>,
            std::map<std::string, std::set<std::string>>>
@@ -143,7 +143,7 @@ std::string stimuli_of_answers(std::span<const Answer> answers) {
   return {};
 }
 
-/// Notes where the answers of a run differ in a fact that does not make another stimulus.
+/// Notes differences between runs that do not change the stimulus.
 void note_runs(std::span<const Answer> answers, std::vector<std::string>& notes) {
   using Fact = std::pair<const char*, std::string RunFacts::*>;
   for (const auto& [name, member] :
@@ -182,11 +182,11 @@ void require_same_stimuli(std::span<const Answer> answers, std::span<const Study
   std::string found = stimuli_of_files(files);
   if (found.empty() && !all_have_settings) found = stimuli_of_answers(answers);
   if (!found.empty() && !pool) {
-    throw InputError("answers are to different stimuli under the same name: " + found +
-                     "; analyse those of each study alone, or add --pool to take them together");
+    throw InputError("the same name stands for different stimuli: " + found +
+                     "; analyse each study separately, or add --pool to combine them");
   }
   if (!found.empty())
-    notes.push_back("Answers to different stimuli are taken together (--pool): " + found + '.');
+    notes.push_back("Answers to different stimuli are combined (--pool): " + found + '.');
   note_protocols(files, notes);
   note_runs(answers, notes);
 }

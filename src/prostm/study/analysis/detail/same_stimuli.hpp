@@ -1,5 +1,5 @@
 #pragma once
-/// Whether answers that have the same names are answers to the same stimuli.
+/// Checks that answers with the same method and scene names are about the same stimuli.
 
 #include <nlohmann/json.hpp>
 #include <span>
@@ -12,15 +12,15 @@ namespace prostm::study {
 
 /// The study of a participant's file.
 struct StudyFile {
-  std::string participant;          ///< as in the answers
-  nlohmann::ordered_json protocol;  ///< with all settings of all methods; may lack any part
+  std::string participant;          ///< name as in the answers
+  nlohmann::ordered_json protocol;  ///< with all settings of all methods; any part may be missing
   bool rehearsal = false;
 };
 
-/// Compares the settings of methods, levels and standards of participants' files, the checksums of
-/// stimuli in answers, and whether answers were made up. @param pool what differs is noted, not
-/// refused. @param notes gets sentences about other differences: parts of protocols, devices,
-/// arrays, hands, versions. @throws InputError: stimuli that have one name differ.
+/// Compares the settings of methods, levels and standards in participants' files, the checksums of
+/// stimuli in answers, and whether files are rehearsals. @param pool note differences instead of
+/// refusing them. @param notes receives sentences about other differences: parts of protocols,
+/// devices, arrays, hands, versions. @throws InputError: different stimuli have the same name.
 void require_same_stimuli(std::span<const Answer> answers, std::span<const StudyFile> files,
                           bool pool, std::vector<std::string>& notes);
 

@@ -12,7 +12,7 @@
 namespace prostm::study {
 namespace {
 
-/// Other programs' names of the needed columns, for the example of a message.
+/// Names of the needed columns in other programs, used to suggest --columns.
 constexpr std::array<std::pair<Column, std::string_view>, 22> kOthersNames = {{
     {Column::Participant, "subject"},
     {Column::Participant, "subj"},
@@ -42,8 +42,8 @@ std::vector<std::string> known_names() {
   return {kNames<Column>.begin(), kNames<Column>.end()};
 }
 
-/// Whether a text begins with a line "sep=;", which Excel reads and writes. @param size of the line
-/// without its end.
+/// Whether a text begins with a line "sep=;", which Excel reads and writes. @param size receives
+/// the length of the line without its end.
 bool names_separator(std::string_view text, std::size_t& size) {
   constexpr std::string_view kSep = "sep=";
   const std::size_t begin = text.starts_with('"') ? 1 : 0;
@@ -70,7 +70,7 @@ ColumnMap column_map(std::string_view text) {
     if (value.empty()) {
       throw InputError(
           "--columns has \"" + shown_name(entry) +
-          "\"; give NAME=COLUMN, as correct=key_resp.corr, or NAME:=VALUE for all rows");
+          "\"; give NAME=COLUMN, e.g. correct=key_resp.corr, or NAME:=VALUE for all rows");
     }
     const auto column = value_named<Column>(name);
     if (!column) throw InputError("--columns: " + must_be(name, kNames<Column>));
@@ -99,7 +99,7 @@ ColumnPlaces::ColumnPlaces(const std::vector<std::string>& header, const ColumnM
       const auto at = std::find(names.begin(), names.end(), wanted);
       if (at == names.end()) return false;
       if (std::find(at + 1, names.end(), wanted) != names.end())
-        csv.fail("the column \"" + shown_name(name) + "\" stands there twice");
+        csv.fail("the column \"" + shown_name(name) + "\" appears twice");
       places_[i] = static_cast<std::size_t>(at - names.begin());
       return true;
     };
@@ -127,7 +127,7 @@ void ColumnPlaces::require(const std::vector<Column>& needed, const CsvReader& c
   if (header_.size() > kMostShown) columns += ", …";
   csv.fail(
       fmt::format("the header has no column \"{}\": participant, method, scene and correct are "
-                  "needed, and it has {}; name them by --columns {}",
+                  "needed, but it has {}; name them with --columns {}",
                   name_of(missing.front()), columns, example(missing)));
 }
 
@@ -164,7 +164,7 @@ char separator_of(std::string_view& text, const std::string& file, const ColumnM
     try {
       if (!csv.next(header)) continue;
     } catch (const InputError&) {
-      continue;  // quotes do not stand around the values of this separator
+      continue;  // quotes do not enclose the values with this separator
     }
     std::size_t found = header.size() > 1 ? 1 : 0;
     for (const std::string& name : header) {

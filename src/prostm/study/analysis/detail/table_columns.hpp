@@ -1,5 +1,5 @@
 #pragma once
-/// The columns of an answer table: which of them hold what.
+/// The columns of an answer table and their meaning.
 
 #include <array>
 #include <cstdint>
@@ -53,7 +53,7 @@ inline constexpr std::array<std::string_view, prostm::study::kColumns>
 
 namespace prostm::study {
 
-/// Names of a table's own columns, and values that hold for all its rows.
+/// The table's own column names, and values that apply to all rows.
 struct ColumnMap {
   std::map<Column, std::string> named, constant;
 };
@@ -62,23 +62,23 @@ struct ColumnMap {
 /// @throws InputError: a name that is unknown or given twice, no "=".
 ColumnMap column_map(std::string_view text);
 
-/// The places of the columns in the rows of a table.
+/// The positions of the columns in a table.
 class ColumnPlaces {
  public:
   /// Names match without regard to case, blanks, "-" and "_"; an exact match is preferred.
-  /// @throws InputError by csv.fail(): a column that map names is missing, or two columns match.
+  /// @throws InputError by csv.fail(): a column named in `map` is missing, or two columns match.
   ColumnPlaces(const std::vector<std::string>& header, const ColumnMap& map, const CsvReader& csv);
 
-  /// Whether rows have a value of this kind, in a column or for all of them.
+  /// Whether there is such a value, in a column or for all rows.
   bool has(Column column) const { return place(column) || is_constant(column); }
   bool is_constant(Column column) const { return map_.constant.contains(column); }
   std::optional<std::size_t> place(Column column) const {
     return places_[static_cast<std::size_t>(column)];
   }
-  /// Returns the value of a row, trimmed. @pre has(column), place(column) lies in the row.
+  /// Returns the trimmed value of a row. @pre has(column), place(column) is within the row.
   std::string value(Column column, const std::vector<std::string>& row) const;
-  /// @throws InputError by csv.fail(): a column that is needed is missing. The message lists the
-  /// table's columns, and an example of --columns with what they may be.
+  /// @throws InputError by csv.fail(): a needed column is missing. The message lists the table's
+  /// columns and suggests a value of --columns.
   void require(const std::vector<Column>& needed, const CsvReader& csv) const;
   std::size_t size() const { return header_.size(); }
 
@@ -90,8 +90,8 @@ class ColumnPlaces {
   std::array<std::optional<std::size_t>, kColumns> places_;
 };
 
-/// Returns the separator with which the header has most of the columns that are looked for, and
-/// moves `text` past a first line "sep=;".
+/// Returns the separator for which the header contains most of the needed columns, and moves `text`
+/// past a first line "sep=;".
 char separator_of(std::string_view& text, const std::string& file, const ColumnMap& map);
 
 }  // namespace prostm::study

@@ -12,7 +12,7 @@ namespace {
 
 namespace utf = boost::locale::utf;
 
-/// Code points of the bytes 0x80 to 0x9F in Windows-1252; its five unused bytes stay themselves.
+/// Code points of the bytes 0x80 to 0x9F in Windows-1252; its five unused bytes map to themselves.
 constexpr std::array<char16_t, 32> kWindows1252 = {
     0x20AC, 0x0081, 0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
     0x2039, 0x0152, 0x008D, 0x017D, 0x008F, 0x0090, 0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
@@ -56,7 +56,7 @@ std::string from_utf16(std::string_view bytes, bool big_endian, const std::strin
   return out;
 }
 
-/// Whether every second byte of the first ones is zero, as in UTF-16 of Latin letters.
+/// Whether every second byte at the beginning is zero, as in UTF-16 text of Latin letters.
 bool has_zeros_from(std::string_view bytes, std::size_t first) {
   constexpr std::size_t kLooked = 16;
   if (bytes.size() < 4) return false;

@@ -5,7 +5,7 @@
 
 namespace prostm::study {
 
-/// A number with so many decimals, so that files stay small.
+/// Rounds to a number of decimals, to keep files small.
 inline double rounded(double value, int decimals) {
   const double scale = std::pow(10.0, decimals);
   return std::round(scale * value) / scale;

@@ -46,10 +46,10 @@ std::string stimulus_hash(const Protocol& protocol, const Trial& trial) {
 double number_in(const ResponseLine& line, const char* key, const std::string& file) {
   const auto found = line.find(key);
   if (found != line.end() && found->is_number()) return found->get<double>();
-  throw InputError(fmt::format(
-      "{}: the line of the kind \"{}\" of trial {} has no number \"{}\", so the session "
-      "cannot be resumed",
-      file, line.value(line::kKind, ""), line.value(line::kTrial, 0), key));
+  throw InputError(
+      fmt::format("{}: the line of kind \"{}\" of trial {} has no number \"{}\", so the session "
+                  "cannot be resumed",
+                  file, line.value(line::kKind, ""), line.value(line::kTrial, 0), key));
 }
 
 std::string bound_sentence(const Protocol& protocol, const Course::Lane& lane) {
@@ -66,7 +66,7 @@ std::string bound_sentence(const Protocol& protocol, const Course::Lane& lane) {
     return "An adjustment was accepted at " + where + ", so the result may lie beyond it.";
   return fmt::format(
       "{} answers in a row left a staircase at {}, so the threshold may lie beyond it. Check that "
-      "the participant has understood the question and does not always answer alike.",
+      "the participant has understood the question and does not always give the same answer.",
       bound.answers, where);
 }
 

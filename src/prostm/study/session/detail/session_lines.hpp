@@ -17,13 +17,15 @@ namespace prostm::study {
 /// [s, x, y, z in mm, quaternion x, y, z, w]
 nlohmann::ordered_json pose_json(double time, const Pose& X_DP);
 nlohmann::ordered_json gate_json(const std::optional<GateResult>& gate);
-/// CRC-32 of all that makes a trial's stimulus: settings, with the level, and scene.
+/// CRC-32 of everything that defines a trial's stimulus: the scene, and the settings with the
+/// level.
 std::string stimulus_hash(const Protocol& protocol, const Trial& trial);
-/// A number of a line of `file`. @throws InputError if it is missing.
+/// Returns a number from a line of `file`. @throws InputError if it is missing.
 double number_in(const ResponseLine& line, const char* key, const std::string& file);
-/// Says that a track stands at an end of its range; which, only if the study is not blind.
+/// Returns a sentence about a track at an end of its range; it names track and end only if the
+/// study is not blind.
 std::string bound_sentence(const Protocol& protocol, const Course::Lane& lane);
-/// Adds the time.
+/// Returns the line with the time added.
 ResponseLine stamped(ResponseLine line, const StudySight& sight);
 
 }  // namespace prostm::study

@@ -31,8 +31,8 @@ class LevelChecks {
     if (!task_.traits().has_levels) {
       if (std::any_of(given_.begin(), given_.end(),
                       [](const std::string& name) { return name.starts_with("level."); }))
-        fail(fmt::format("[level] is for another task than {}; give e.g. task = \"judgement\"",
-                         task));
+        fail(fmt::format(
+            "task {} does not use [level]; set another task, e.g. task = \"judgement\"", task));
       return check_task();
     }
     for (const char* key : {"setting", "low", "high"})
@@ -42,13 +42,13 @@ class LevelChecks {
           fmt::format("level.low = {:g} must be below level.high = {:g}", level_.low, level_.high));
     }
     if (level_.scale == LevelScale::Log && !(level_.low > 0.0))
-      fail(fmt::format("level.low = {:g} must be above 0, since scale is log", level_.low));
+      fail(fmt::format("level.low = {:g} must be above 0 because scale is log", level_.low));
     settle_start();
     take_standard();
     if (protocol_.trials.feedback && !has_right_answers())
       fail(
-          fmt::format("trials.feedback tells whether an answer was right, and task {} has no right "
-                      "answers here",
+          fmt::format("trials.feedback is not possible: task {} has no right or wrong answers with "
+                      "these levels",
                       task));
     for (const StudyMethod& method : protocol_.methods) check_method(method);
     try {
@@ -80,7 +80,7 @@ class LevelChecks {
   void settle_start() {
     const bool steps = task_.is_tuned() || level_.procedure == Staircase::UpDown;
     if (steps && !(level_.step > 0.0)) {
-      fail(fmt::format("{} needs step in [level], above 0",
+      fail(fmt::format("{} needs a step above 0 in [level]",
                        task_.is_tuned() ? task_.name() : "procedure up-down"));
     }
     if (!gives("start")) {
@@ -96,15 +96,15 @@ class LevelChecks {
   void take_standard() {
     if (!task_.traits().compares) {
       if (gives("against") || gives("reference")) {
-        fail(fmt::format("a {} compares with nothing: leave level.against and level.reference out",
+        fail(fmt::format("task {} has no standard: leave out level.against and level.reference",
                          task_.name()));
       }
       return;
     }
     if (level_.against.empty() == !gives("reference")) {
       fail(fmt::format(
-          "task {} compares with a standard: give level.reference, a level, or level.against, a "
-          "method, and not both",
+          "task {} needs a standard: give either level.reference, a level, or level.against, a "
+          "method",
           task_.name()));
     }
     if (level_.against.empty()) return;
@@ -112,22 +112,22 @@ class LevelChecks {
     const auto found = std::find_if(methods.begin(), methods.end(),
                                     [&](const auto& m) { return m.name == level_.against; });
     if (found == methods.end())
-      fail(fmt::format("level.against = \"{:.60}\", and there is no such [method.NAME]",
+      fail(fmt::format("level.against = \"{:.60}\" names no [method.NAME] of the protocol",
                        level_.against));
     protocol_.standard = *found;
     methods.erase(found);
     if (methods.empty())
-      fail("level.against is the only method: give another one, whose level is varied");
+      fail("level.against is the only method: add another one, whose level is varied");
   }
 
-  /// Checks that a level is played as it is written, in every scene.
+  /// Checks that a level is played exactly as written, in every scene.
   void check_level(const StudyMethod& method, const char* key, double level) const {
     try {
       PipelineSettings settings = method.settings;
       const double set = set_level(settings, level_.setting, level);
       if (set != level) {
-        throw std::invalid_argument(
-            fmt::format("{} takes whole numbers, and would be {:g}", level_.setting, set));
+        throw std::invalid_argument(fmt::format(
+            "{} must be a whole number, and would be rounded to {:g}", level_.setting, set));
       }
       require_playable(settings, settings.device_info());
       if (level_.setting == "plan.gain" || level_.setting == "emit.full_scale_pressure")
@@ -140,7 +140,7 @@ class LevelChecks {
     }
   }
 
-  /// Checks that full scale holds the largest pressure of each scene, and that it sounds.
+  /// Checks that the largest pressure of each scene is neither clipped at full scale nor silent.
   void check_scale(const PipelineSettings& settings) const {
     const double full = settings.emit.full_scale_pressure, gain = settings.plan.gain;
     if (full == 0.0 || settings.method == Method::Am) return;
@@ -149,16 +149,17 @@ class LevelChecks {
       const double pressure = gain * scene_named(scene.name, world).full_scale_pressure;
       const double share = pressure / full;
       if (share > 1.0 + kRounding) {
-        throw std::invalid_argument(fmt::format(
-            "scene {} renders up to {:.3g} Pa with gain {:g}, which full_scale_pressure = {:g} Pa "
-            "clips",
-            scene.name, pressure, gain, full));
+        throw std::invalid_argument(
+            fmt::format("scene {} renders up to {:.3g} Pa with gain {:g}, which is clipped at "
+                        "full_scale_pressure = {:g} Pa",
+                        scene.name, pressure, gain, full));
       }
       if (share < settings.emit.silent_below) {
-        throw std::invalid_argument(fmt::format(
-            "scene {} renders up to {:.3g} Pa with gain {:g}, {:.2g} of full_scale_pressure, and "
-            "shares under silent_below = {:g} are silent",
-            scene.name, pressure, gain, share, settings.emit.silent_below));
+        throw std::invalid_argument(
+            fmt::format("scene {} renders up to {:.3g} Pa with gain {:g}, {:.2g} of "
+                        "full_scale_pressure; shares "
+                        "below silent_below = {:g} are silent",
+                        scene.name, pressure, gain, share, settings.emit.silent_below));
       }
     }
   }
@@ -172,7 +173,7 @@ class LevelChecks {
     if (level_.setting == "plan.gain" && method.settings.emit.full_scale_pressure == 0.0) {
       fail(fmt::format(
           "level.setting = \"plan.gain\" would change nothing with method {}, whose full scale "
-          "goes with the gain; give all methods the same [method.NAME.emit] full_scale_pressure",
+          "follows the gain; give all methods the same [method.NAME.emit] full_scale_pressure",
           method.name));
     }
     const bool is_am = method.settings.method == Method::Am;

@@ -1,4 +1,4 @@
-/// Adjustment: the level is tuned until it feels like the standard, which comes in turn with it.
+/// Adjustment: the level is tuned until it feels like the standard; the two alternate.
 
 #include <cmath>
 
@@ -9,8 +9,8 @@
 namespace prostm {
 namespace {
 
-constexpr double kContent = 0.015;  // with a distance, of the range: a rehearsal accepts
-constexpr double kFar = 0.15;       // a distance that is tuned in large steps, of the range
+constexpr double kContent = 0.015;  // distance at which a rehearsal accepts, over the range
+constexpr double kFar = 0.15;       // distance above which it takes large steps, over the range
 
 class AdjustmentTask final : public Task {
  public:
@@ -20,7 +20,7 @@ class AdjustmentTask final : public Task {
               .spoken = "Say more or less, and when they are alike.",
               .compares = true,
               .intervals = 2,
-              .answers_at_bound = 1}) {}  // each of them is a result
+              .answers_at_bound = 1}) {}  // each adjustment is a result
 
   TrackPlan tracks(const Protocol& protocol) const override {
     return {.trials = protocol.trials.repeats};

@@ -1,4 +1,5 @@
-/// Forced choice: two intervals, the level's and the standard's, and the question which.
+/// Forced choice: two intervals, one with the level and one with the standard; the participant
+/// chooses one.
 
 #include <fmt/format.h>
 

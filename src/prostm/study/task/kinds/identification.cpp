@@ -1,4 +1,4 @@
-/// Identification: one interval, and the question whether it is a certain scene.
+/// Identification: one interval; the participant says whether it was the scene in question.
 
 #include "prostm/study/task/task.hpp"
 #include "prostm/study/task/tasks.hpp"

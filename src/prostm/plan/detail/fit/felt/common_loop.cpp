@@ -6,14 +6,14 @@
 namespace prostm::planning {
 namespace {
 
-constexpr int kSteps = 20;           // a loop is a multiple of the longest over this …
-constexpr int kLeastSteps = 10;      // … and at least so many of them
-constexpr int kMostLaps = 8;         // of a path in a loop
-constexpr double kRounding = 1e-9;   // share of a lap that does not count
-constexpr double kHysteresis = 1.1;  // gain for which the last plan's loop is given up
+constexpr int kSteps = 20;           // periods tried are multiples of longest / kSteps …
+constexpr int kLeastSteps = 10;      // … with at least this factor
+constexpr int kMostLaps = 8;         // maximum laps of a path in a loop
+constexpr double kRounding = 1e-9;   // share of a lap that is ignored
+constexpr double kHysteresis = 1.1;  // factor of gain that justifies a new loop
 
 /// Σ (speed over own speed)² in a loop; 0 if it is too short for a path.
-double quickness(std::span<const double> own, const CommonLoop& loop) {
+double squared_speeds(std::span<const double> own, const CommonLoop& loop) {
   double sum = 0.0;
   for (std::size_t k = 0; k < own.size(); ++k) {
     if (loop.laps[k] == 0) return 0.0;
@@ -36,17 +36,17 @@ CommonLoop loop_of(std::span<const double> own, double period) {
 
 CommonLoop choose_loop(std::span<const double> own, double longest, double before) {
   CommonLoop best = loop_of(own, longest);
-  double most = quickness(own, best);
+  double most = squared_speeds(own, best);
   for (int steps = kSteps - 1; steps >= kLeastSteps; --steps) {
     const CommonLoop loop = loop_of(own, longest * steps / kSteps);
-    const double value = quickness(own, loop);
+    const double value = squared_speeds(own, loop);
     if (value <= most * (1.0 + kRounding)) continue;
     best = loop;
     most = value;
   }
   if (before <= 0.0) return best;
   const CommonLoop kept = loop_of(own, before);
-  return kHysteresis * quickness(own, kept) >= most ? kept : best;
+  return kHysteresis * squared_speeds(own, kept) >= most ? kept : best;
 }
 
 }  // namespace prostm::planning

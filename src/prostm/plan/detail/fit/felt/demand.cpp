@@ -6,16 +6,16 @@
 namespace prostm::planning {
 namespace {
 
-constexpr int kNorm = 64;          // exponent of the norm that stands for the largest
-constexpr float kNoMatter = 0.3F;  // its power is 1e-33; those of lower ones are slow to compute
+constexpr int kNorm = 64;            // exponent of the norm that approximates the maximum
+constexpr float kNegligible = 0.3F;  // its power is 1e-33; smaller values would be slow denormals
 constexpr float kLeastDuration = 1e-6F;
-// distance that focal points should keep [mm]: an array shows two nearer ones with much more output
+// distance that focal points should keep [mm]: two closer ones cost an array much more output
 constexpr float kApart = 10.0F;
-constexpr float kNearWeight = 1.0F;  // of (P24)
+constexpr float kNearWeight = 1.0F;  // weight of (P24)
 
 /// x to the power of kNorm − 1.
 float almost_norm(float x) {
-  float square = std::max(x, kNoMatter), power = square;
+  float square = std::max(x, kNegligible), power = square;
   for (int n = 2; n < kNorm; n *= 2) {
     square *= square;
     power *= square;
@@ -93,7 +93,7 @@ void Demand::add_place(const Passing& at, const StepPoints& points, float dx, fl
   gradient_y[at.first] += before * dy;
   gradient_x[at.second] += at.share * dx;
   gradient_y[at.second] += at.share * dy;
-  // passed later, a point is farther ahead
+  // if the focal point passes these points later, it is less far along at this moment
   const float back = (dx * (points.x[at.second] - points.x[at.first]) +
                       dy * (points.y[at.second] - points.y[at.first])) /
                      at.duration;

@@ -7,9 +7,9 @@
 namespace prostm::planning {
 namespace {
 
-constexpr float kLeastField = 1e-6F;  // keeps a field without pressure in reach from being all 0
+constexpr float kLeastField = 1e-6F;  // keeps the field above 0 where no path is in reach
 
-/// From one point to the next.
+/// A segment from one point to the next.
 struct Segment {
   Segment(const StepPoints& points, std::size_t i)
       : x(points.x[i]),
@@ -18,7 +18,7 @@ struct Segment {
         ey(points.y[points.next(i)] - y),
         per_square(1.0F / std::max(ex * ex + ey * ey, 1e-12F)) {}
 
-  /// Returns the share of the way at which it is closest to a place this far from its beginning.
+  /// Returns where it is closest to the point at (dx, dy) from its start, 0 (start) to 1 (end).
   float share(float dx, float dy) const {
     const float along = (dx * ex + dy * ey) * per_square, forward = along < 0.0F ? 0.0F : along;
     return forward > 1.0F ? 1.0F : forward;
@@ -36,8 +36,8 @@ EnvelopeLack::EnvelopeLack(std::size_t most_cells) {
   for (Eigen::VectorXf* v : {&field_, &pull_}) v->setZero(static_cast<Eigen::Index>(most_cells));
 }
 
-/// Sets segment_ and least_ of each cell. The loop over cells is inside, since that one is a
-/// vector's.
+/// Sets segment_ and least_ of each cell. The loop over cells is the inner one, so that it
+/// vectorises.
 void EnvelopeLack::find_nearest(const StepPoints& points) {
   const std::size_t cells = x_.size();
   least_.assign(cells, std::numeric_limits<float>::max());

@@ -1,5 +1,5 @@
 #pragma once
-/// The field of Eq. (1) in the cells of a felt loss, and how badly it renders the target.
+/// The field of Eq. (1) in the cells of a felt loss, and its rendering error.
 
 #include <Eigen/Core>
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace prostm::planning {
 
-/// Closed paths as they lie in the variables of a felt step: `samples` points each, one path after
-/// the other [mm].
+/// Closed paths in the layout of a felt step's variables: `samples` points each, one path after the
+/// other [mm].
 struct StepPoints {
   int samples = 0;
   std::span<const float> x, y;
@@ -23,14 +23,14 @@ struct StepPoints {
   }
 };
 
-/// Sized once; nothing else allocates.
+/// Rendering error of the field of Eq. (1). Only construction allocates.
 class EnvelopeLack {
  public:
   explicit EnvelopeLack(std::size_t most_cells);
 
-  /// Takes over the points. @param sigma of a focus [mm].
+  /// Sets the points. @param sigma σ of a focus [mm].
   void set_points(const std::vector<FeltCells::Cell>& cells, const StepPoints& points, float sigma);
-  /// Returns 1 − S_8.5 of (P10). @param rendering of the target in the cells.
+  /// Returns 1 − S_8.5 of (P10). @param rendering compares with the target in the cells.
   float evaluate(RenderLack<float>& rendering, std::span<const float> pressure);
   /// Adds `weight` times the gradient of the last evaluate() with respect to the pressures.
   void add_gradient(float weight, std::span<float> gradient) const;
@@ -39,17 +39,17 @@ class EnvelopeLack {
                  std::span<float> gradient_x, std::span<float> gradient_y) const;
 
  private:
-  /// The closest place of the paths to a cell: its field is a·p_first + b·p_second.
+  /// The point of the paths that is closest to a cell: the cell's field is a·p_first + b·p_second.
   struct Nearest {
     std::uint32_t first = 0, second = 0;
     float a = 0.0F, b = 0.0F;
-    float along = 0.0F;          // share of the segment
-    float dx = 0.0F, dy = 0.0F;  // vector from there to the cell [mm]
+    float along = 0.0F;          // position on the segment, 0 to 1
+    float dx = 0.0F, dy = 0.0F;  // vector from the closest point to the cell [mm]
   };
   void find_nearest(const StepPoints& points);
 
   std::vector<Nearest> nearest_;
-  // of each cell: its place [mm], the segment that is closest, and its distance squared
+  // for each cell: its position [mm], the closest segment, and the squared distance to it
   std::vector<float> x_, y_, least_;
   std::vector<std::int32_t> segment_;
   float sigma_ = 1.0F;  // [mm]

@@ -8,13 +8,13 @@
 namespace prostm::planning {
 namespace {
 
-// Pressures of moved points are to be felt this much more than the fit's, since an array reaches
-// less at some places than (P20) expects; and more where the loop slows focal points down.
+// Factor on the loudness to keep if points move, since an array reaches less in some places than
+// (P20) assumes. It is divided by the pace of the loop, since slower focal points are felt less.
 constexpr float kSpare = 1.05F;
-constexpr double kLeastPace = 0.7;    // below which no more loudness is asked for
-constexpr float kLeastShare = 1e-6F;  // of a lap that a point stands for, in a divisor
+constexpr double kLeastPace = 0.7;    // lower bound of the pace in that division
+constexpr float kLeastShare = 1e-6F;  // lower bound of a point's share of a lap, as a divisor
 
-/// Points that move can use finer cells than pressures can.
+/// Maximum number of cells: moving points benefits from finer cells than choosing pressures does.
 std::size_t most_cells(const PlanSettings& settings) {
   return settings.felt_points ? kFinerFeltCells : kFeltCells;
 }
@@ -73,13 +73,14 @@ void FeltProblem::set_points(const StepPoints& points, const CommonLoop& loop) {
     envelope_.set_points(cells_.cells(), points, static_cast<float>(kMmPerMetre * sigma_));
 }
 
-/// Sets pressure_ from √p, for an output of 1. output_ is the output that it was, (P20).
+/// Sets pressure_ from √p, scaled to an output of 1, and output_ to the output before scaling,
+/// (P20).
 void FeltProblem::normalise(std::span<const float> root) {
   for (std::size_t j = 0; j < root.size(); ++j) pressure_[j] = root[j] * root[j];
   output_ = demand_.normalise(pressure_);
 }
 
-/// Blends what is felt with the field of Eq. (1).
+/// Blends the loss of the percept with that of the field of Eq. (1).
 float FeltProblem::add_envelope(float felt) {
   if (weight_ >= 1.0F) return felt;
   return weight_ * felt + (1.0F - weight_) * envelope_.evaluate(loss_.rendering(), pressure_);
@@ -99,7 +100,7 @@ void FeltProblem::gradient(std::span<const float> root, std::span<float> gradien
   loss_.gradient(felt_gradient_);
   for (std::size_t j = 0; j < root.size(); ++j) gradient_[j] = weight_ * felt_gradient_[j];
   if (weight_ < 1.0F) envelope_.add_gradient(1.0F - weight_, gradient_);
-  // more output changes nothing
+  // the cost does not depend on the output, so the gradient along the pressures is removed
   along_ = 0.0F;
   for (std::size_t j = 0; j < root.size(); ++j) along_ += gradient_[j] * pressure_[j];
   demand_.add_gradient(along_, gradient_);
@@ -116,7 +117,7 @@ float FeltProblem::slide(std::span<float> gradient_x, std::span<float> gradient_
     gradient_x[j] *= weight_;
     gradient_y[j] *= weight_;
     by_time_[j] *= weight_ / static_cast<float>(path.laps());
-    // how much a point stands for scales its pressure
+    // a point's share of a lap scales the effect of its pressure
     by_share_[j] =
         weight_ * felt_gradient_[j] * pressure_[j] / std::max(path.share(j % n), kLeastShare);
   }

@@ -1,6 +1,6 @@
 #pragma once
-/// How badly closed paths in step render a target, by what is felt and by the field of Eq. (1), as
-/// a function of their pressures and points: (P19) and (P20).
+/// Rendering error of closed paths in step, of the percept and of the field of Eq. (1), as a
+/// function of pressures and points: (P19) and (P20).
 
 #include <span>
 #include <vector>
@@ -16,22 +16,21 @@
 
 namespace prostm::planning {
 
-/// The most points that are chosen in a plan.
+/// Maximum number of points of a plan whose pressures are chosen.
 std::size_t most_felt_points(const PlanSettings& settings);
 
-/// Sized once; nothing else allocates.
+/// The cost of the felt step. Only construction allocates.
 class FeltProblem {
  public:
   explicit FeltProblem(const PlanSettings& settings);
 
-  /// Takes over a target. @param maximum its largest pressure, > 0. @param sigma of a focus [m].
+  /// Sets the target. @param maximum its largest pressure, > 0. @param sigma σ of a focus [m].
   void set_target(const TargetField& target, double maximum, double sigma);
-  /// Takes over points: each path begins at its first.
+  /// Sets the points: each path begins at its first.
   void set_points(const StepPoints& points, const CommonLoop& loop);
   /// Returns (P19) as a function of the roots of the pressures.
   float evaluate(std::span<const float> root);
-  /// Does the same, and keeps the loudness of that as the one that must not be lost; if points
-  /// move, a little more.
+  /// Returns the same, and makes this loudness the one to keep; if points move, a little more.
   float keep_loudness(std::span<const float> root);
   /// Computes the gradient of the last evaluate() with respect to the roots.
   void gradient(std::span<const float> root, std::span<float> gradient);
@@ -54,8 +53,8 @@ class FeltProblem {
 
   const float weight_;
   const bool moves_;    // whether points move
-  int first_ = 1;       // first harmonic that is felt
-  double sigma_ = 1.0;  // of a focus [m]
+  int first_ = 1;       // lowest harmonic of the model
+  double sigma_ = 1.0;  // σ of a focus [m]
   float spare_ = 1.0F;  // factor on the loudness to keep, if points move
   float square_ = 1.0F, output_ = 1.0F;
   FeltTables tables_;
@@ -65,7 +64,7 @@ class FeltProblem {
   StepPoints points_;
   std::vector<StepPath<float>> paths_;
   std::vector<FeltSource<float>> sources_;
-  // of each point; gradients with respect to its pressure, moment and share
+  // for each point: pressure, and gradients with respect to its pressure, time and share of a lap
   std::vector<float> pressure_, gradient_, felt_gradient_, by_time_, by_share_;
   Demand demand_;
   float along_ = 0.0F;  // Σ pressure · gradient of the last evaluate()

@@ -54,7 +54,7 @@ void FeltStep::set_target(const TargetField& target, double maximum, double sigm
   problem_.set_target(target, maximum, sigma);
 }
 
-/// Takes every so many-th point of each path in the order in which it is passed.
+/// Takes every `pieces`-th point of each path, in the order in which the focal point passes them.
 StepPoints FeltStep::take_points(const Loops& loops, const LapStarts& starts,
                                  const CommonLoop& loop, int pieces) {
   const int samples = loops.samples / pieces;
@@ -74,9 +74,9 @@ StepPoints FeltStep::take_points(const Loops& loops, const LapStarts& starts,
   return points;
 }
 
-/// Takes the pressures of the fit at the points.
+/// Sets fitted_ to √p of the fit at the points.
 void FeltStep::take_fit(const NodeArray& pressure) {
-  constexpr float kTiny = 1e-3F;  // so that the fit is never silent throughout
+  constexpr float kTiny = 1e-3F;  // so that the fit is not silent everywhere
   fitted_.clear();
   for (const std::size_t node : node_)
     fitted_.push_back(std::max(std::sqrt(pressure[node]), kTiny));
@@ -92,8 +92,8 @@ void FeltStep::begin_at_fit() {
   for (const float root : fitted_) root_.push_back(std::max(root, least));
 }
 
-/// Begins at the fit's √p, changed as the last plan's were; or at those of moved points. Where no
-/// kept point is near, at the fit's.
+/// Sets the start of a descent: the fit's √p plus the change of the previous plan at the nearest
+/// kept point, or the √p of moved points; where no kept point is near, the fit's √p.
 void FeltStep::begin_at_kept() {
   begin_at_fit();
   const float least = least_root();
@@ -121,8 +121,8 @@ void FeltStep::keep(Kept::From from, const FeltProblem::Loudness& wanted) {
   kept_.wanted = wanted;
 }
 
-/// Lowers the cost of √p from what is kept, or from the fit where that costs less than the last
-/// plan's. @return evaluations used.
+/// Lowers the cost as a function of √p, from the kept points, or from the fit if that costs less
+/// than the start from the previous plan. @return evaluations used.
 int FeltStep::descend(const QuasiNewton::Cost& cost, float fit_cost) {
   const FeltEffort* effort = kept_.from == Kept::From::MovedPoints ? &tuning_.from_moved
                              : kept_.from == Kept::From::LastPlan  ? &tuning_.from_last_plan
@@ -130,18 +130,18 @@ int FeltStep::descend(const QuasiNewton::Cost& cost, float fit_cost) {
   begin_at_kept();
   int evaluations = 0;
   if (descent_.begin(cost, root_) > fit_cost && kept_.from == Kept::From::LastPlan) {
-    // a path that has changed is not what the last plan's changes were for
+    // the paths have changed too much for the previous plan's changes to help
     begin_at_fit();
     descent_.begin(cost, root_);
     ++evaluations;
     effort = &tuning_.from_fit_again;
   }
   evaluations += descent_.run(cost, effort->first_step, effort->evaluations, root_);
-  for (float& root : root_) root = std::abs(root);  // either sign stands for p
+  for (float& root : root_) root = std::abs(root);  // the sign has no meaning: p is its square
   return evaluations;
 }
 
-/// Scales √p to this loudness, as far as the output suffices.
+/// Scales √p to this loudness, as far as the limits of output and pressure allow.
 void FeltStep::make_as_loud(const FeltProblem::Loudness& wanted, float most_pressure) {
   problem_.evaluate(root_);
   const FeltProblem::Loudness found = problem_.loudness();
@@ -163,7 +163,7 @@ int FeltStep::choose_pressures(const Loops& loops, const LapStarts& starts, cons
     problem_.gradient(root, gradient);
     return moved ? value + rise_cost(points, bounds, pieces, root, gradient, {}, {}) : value;
   };
-  // std::function holds a reference without allocating
+  // std::function stores a reference without allocating
   const int evaluations = descend(std::ref(cost), fit_cost);
   make_as_loud(wanted, bounds.most[0]);
   for (std::size_t j = 0; j < node_.size(); ++j) pressure[node_[j]] = root_[j] * root_[j];
@@ -172,7 +172,7 @@ int FeltStep::choose_pressures(const Loops& loops, const LapStarts& starts, cons
   return evaluations + (moved ? 1 : 2);
 }
 
-/// (P21): the variables are √p, then x and y of all points in the tuning's unit.
+/// Computes (P21). The variables are √p, then x and y of all points in FeltTuning::unit.
 float FeltStep::moved_cost(const CommonLoop& loop, const ShapeSettings& shape,
                            const PlayBounds& bounds, int pieces, std::span<const float> x,
                            std::span<float> gradient) {

@@ -1,5 +1,6 @@
 #pragma once
-/// Pressures, and points if wanted, that make what is felt look like the target, (P19) to (P21).
+/// Chooses pressures, and optionally moves points, so that the percept resembles the target, (P19)
+/// to (P21).
 
 #include <array>
 #include <span>
@@ -15,59 +16,60 @@
 
 namespace prostm::planning {
 
-/// How far a descent goes: evaluations at most, and the length of its first step in √p.
+/// Limits of a descent: the maximum number of evaluations, and the length of its first step in √p.
 struct FeltEffort {
   int evaluations;
   float first_step;
 };
 
-/// Numbers without a derivation; docs/measurements/felt-step.md has the experiment behind each.
+/// Empirical constants; docs/measurements/felt-step.md has the experiment behind each.
 struct FeltTuning {
-  float least_root = 0.03F;  ///< √p at the beginning, over the largest: at 0 it would stick
-  float unit = 5.0F;         ///< [mm] that a step of points is as long as a step of 1 in √p
-  float near = 2.0F;         ///< a point continues one of the last plan this near [mm]
-  float moved_near = 6.0F;   ///< the same of moved points [mm]
-  // of pressures: from the fit's, from the fit's where the last plan's cost more, from the last
-  // plan's, and after points were moved
+  float least_root = 0.03F;  ///< least initial √p over the largest; at 0 its gradient would vanish
+  float unit = 5.0F;         ///< move of a point that counts like a change of 1 in √p [mm]
+  float near = 2.0F;         ///< distance within which a point continues one of the last plan [mm]
+  float moved_near = 6.0F;   ///< same distance for moved points [mm]
+  // descents of pressures: from the fit, from the fit because the last plan cost more, from the
+  // last plan, and after points were moved
   FeltEffort from_fit = {12, 0.5F}, from_fit_again = {6, 0.5F}, from_last_plan = {6, 0.3F},
              from_moved = {30, 0.5F};
-  FeltEffort moving = {50, 0.5F}, moving_again = {25, 0.5F};  ///< of points, and of mended points
+  /// Descents that move points: the first, and those after mending.
+  FeltEffort moving = {50, 0.5F}, moving_again = {25, 0.5F};
 };
 
-/// Sized once; nothing else allocates.
+/// The felt step of a planner. Only construction allocates.
 class FeltStep {
  public:
   explicit FeltStep(const PlanSettings& settings, const FeltTuning& tuning = {});
 
   /// Forgets the last plan.
   void forget();
-  /// Brings the last plan to other coordinates [mm].
+  /// Shifts the coordinates of the last plan [mm].
   void move(const Vec2& shift);
-  /// Takes over a target. @param maximum its largest pressure, > 0. @param sigma of a focus [m].
+  /// Sets the target. @param maximum its largest pressure, > 0. @param sigma σ of a focus [m].
   void set_target(const TargetField& target, double maximum, double sigma);
-  /// Chooses the pressures of paths in step: those given are where it begins. The points stay.
-  /// @param pieces only each so many-th point is chosen, counted from its path's start; pressures
-  /// are linear between. @param bounds of what can be played. @return evaluations used.
+  /// Chooses the pressures of paths in step, starting from those given. The points stay.
+  /// @param pieces only every `pieces`-th point from its path's start is a variable; pressures
+  /// between are interpolated. @param bounds limits of the emission. @return evaluations used.
   int choose_pressures(const Loops& loops, const LapStarts& starts, const CommonLoop& loop,
                        int pieces, const PlayBounds& bounds, NodeArray& pressure);
-  /// Moves the points of paths in step, while their pressures follow. choose_pressures(), or
-  /// another call with mended paths, continues from there. @param shape of the paths, (P13)–(P15).
-  /// @param bounds of what can be played, with `pieces` per segment. @param pressure where it
-  /// begins. @return evaluations used.
+  /// Moves the points of paths in step together with their pressures. choose_pressures(), or
+  /// another call with mended paths, continues from the result. @param shape weights and bounds of
+  /// (P13)–(P15). @param bounds limits of the emission, with `pieces` per segment. @param pressure
+  /// initial pressures. @return evaluations used.
   int move_points(const LapStarts& starts, const CommonLoop& loop, const ShapeSettings& shape,
                   const PlayBounds& bounds, int pieces, const NodeArray& pressure, Loops& loops);
 
  private:
-  /// A point with its pressure.
+  /// A point with its √p.
   struct Chosen {
     float x, y, root;
-    float more;  ///< how much its √p is above the fit's
+    float more;  ///< its √p minus the fit's
   };
-  /// The points that the next descent continues from.
+  /// The points from which the next descent continues.
   struct Kept {
     enum class From { Nothing, LastPlan, MovedPoints } from = From::Nothing;
     std::vector<Chosen> points;
-    FeltProblem::Loudness wanted;  ///< of moved points: that of the fit before they moved
+    FeltProblem::Loudness wanted;  ///< for moved points: loudness of the fit before they moved
   };
 
   StepPoints take_points(const Loops& loops, const LapStarts& starts, const CommonLoop& loop,
@@ -86,7 +88,7 @@ class FeltStep {
   FeltProblem problem_;
   QuasiNewton descent_;
   Kept kept_;
-  // scratch of one call, of each chosen point: its place [mm], √p, that of the fit, and its node
+  // scratch of one call, for each chosen point: position [mm], √p, √p of the fit, and its node
   std::vector<float> x_, y_, root_, fitted_;
   std::vector<std::size_t> node_;
   // scratch of move_points()

@@ -7,8 +7,8 @@
 namespace prostm::planning {
 namespace {
 
-constexpr float kWeight = 0.1F;        // of the square of what is too much, over the highest
-constexpr float kLeastLength = 1e-3F;  // of a segment [mm]
+constexpr float kWeight = 0.1F;        // weight of the squared excess of √p over the highest √p
+constexpr float kLeastLength = 1e-3F;  // lower bound of a segment's length [mm]
 
 }  // namespace
 
@@ -19,7 +19,7 @@ float rise_cost(const StepPoints& points, const PlayBounds& bounds, int pieces,
   const auto lower = [](float a, float b) { return std::abs(a) < std::abs(b); };
   const auto top =
       static_cast<std::size_t>(std::max_element(root.begin(), root.end(), lower) - root.begin());
-  // over the highest; either sign of √p stands for p
+  // √p relative to the highest; its sign has no meaning, since p is its square
   const float scale = 1.0F / std::abs(root[top]), least = 0.5F / static_cast<float>(pieces);
   const auto add = [&](std::size_t point, float by_share) {
     gradient[point] += std::copysign(scale, root[point]) * by_share;
@@ -30,7 +30,7 @@ float rise_cost(const StepPoints& points, const PlayBounds& bounds, int pieces,
     const auto [low, high] = lower(root[i], root[j]) ? std::pair(i, j) : std::pair(j, i);
     const float dx = points.x[j] - points.x[i], dy = points.y[j] - points.y[i];
     const float length = std::max(std::hypot(dx, dy), kLeastLength);
-    // the plan's highest pressure is as high as it may be
+    // assumes that the plan's highest pressure is at its bound
     const float slope = bounds.slope[k] / std::sqrt(bounds.most[k]);
     const float u = scale * std::abs(root[low]), v = scale * std::abs(root[high]);
     const float d = slope * length;

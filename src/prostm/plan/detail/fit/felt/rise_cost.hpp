@@ -8,9 +8,9 @@
 
 namespace prostm::planning {
 
-/// Computes it, and adds its gradient. @param pieces of which pressures are linear between two
-/// points: make_playable() bounds each. @param root √p of the points. @param gradient with respect
-/// to that. @param gradient_x, gradient_y with respect to the points [1/mm]; may be empty.
+/// Computes (P23) and adds its gradient. @param pieces pieces per segment in which the pressure is
+/// linear; make_playable() bounds each. @param root √p of the points. @param gradient with respect
+/// to `root`. @param gradient_x, gradient_y with respect to the points [1/mm]; may be empty.
 float rise_cost(const StepPoints& points, const PlayBounds& bounds, int pieces,
                 std::span<const float> root, std::span<float> gradient, std::span<float> gradient_x,
                 std::span<float> gradient_y);

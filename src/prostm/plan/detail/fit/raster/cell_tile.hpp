@@ -6,12 +6,12 @@
 
 namespace prostm::planning {
 
-/// Eight neighbouring cells, 4 × 2. Cells without skin that counts have weight 0. All lengths in mm
-/// from the centre of the target's cell (0, 0).
+/// Eight neighbouring cells, 4 × 2. Cells without skin, or whose skin has weight 0, have weight 0.
+/// All positions in mm from the centre of the target's cell (0, 0).
 struct alignas(32) CellTile {
   float x[8], y[8];
   float pressure[8];  ///< p* over the frame's maximum
-  float weight[8];    ///< skin area in the cell over kUnitArea, times its mean weight (P17)
+  float weight[8];    ///< skin area in the cell over kUnitArea, times the mean weight (P17)
   float centre_x, centre_y, radius;
 };
 

@@ -25,7 +25,7 @@ std::size_t ceil_div(N n, N divisor) {
 CellTiles::CellTiles(std::size_t max_cells) {
   tiles_.reserve(std::min(max_cells, kMaxTiles));
   mean_weight_.reserve(tiles_.capacity());
-  // up to five times the columns or rows, since padding fills up the last tile
+  // up to five times the columns or rows, since the last tile is padded
   for (std::vector<double>& sums : columns_) sums.reserve(5 * max_cells);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The skin of a target as weighted points in small tiles, to which plans are fitted.
+/// The skin of a target as weighted points in small tiles, the data that plans are fitted to.
 
 #include <array>
 #include <cstddef>
@@ -17,17 +17,17 @@ class CellTiles {
  public:
   static constexpr std::size_t kMaxTiles = 8192;
 
-  /// @param max_cells the largest target that set() will be given.
+  /// @param max_cells largest number of cells of a target passed to set().
   explicit CellTiles(std::size_t max_cells);
 
-  /// Takes over the skin cells of `target`, averaged into blocks. These are no wider than `width`
-  /// [mm] unless the target's cells are, or there is no room for so many blocks. Allocates nothing.
-  /// @pre maximum > 0, sizes agree, the target has no more than max_cells cells and, if it has
+  /// Averages the skin cells of `target` into blocks. Blocks are at most `width` [mm] wide, unless
+  /// the target's cells are wider or the number of blocks would exceed the capacity. Allocates
+  /// nothing. @pre maximum > 0, sizes agree, the target has at most max_cells cells and, if it has
   /// weights, one > 0 on skin.
   void set(const TargetField& target, double maximum, double width);
 
   const std::vector<CellTile>& tiles() const { return tiles_; }
-  /// Mean weights (P17) of the skin in the cells of tile t, 0 where no skin counts; null if the
+  /// Mean weights (P17) of the skin in the cells of tile t, 0 without weighted skin; null if the
   /// target has no weights.
   const float* mean_weights(std::size_t t) const {
     return mean_weight_.empty() ? nullptr : mean_weight_[t].data();
@@ -44,7 +44,8 @@ class CellTiles {
 
   std::vector<CellTile> tiles_;
   MeanWeights mean_weight_;
-  // sums over a row of blocks: pressure, weights, row indices and, if the target has weights, cells
+  // sums over a row of blocks: pressure, weights, row indices and, for a target with weights, the
+  // number of cells
   std::array<std::vector<double>, 4> columns_;
   float peak_ = 0.0F;
   double square_ = 0.0;

@@ -7,9 +7,9 @@
 
 namespace prostm::planning {
 
-/// A target's weights over their mean by pressure, Σ w p* / Σ p*. A common factor of the weights
-/// does not matter, and pressure that all lies under one weight is fitted as without weights.
-/// Weights below kLeastShare of the largest count as 0. Refers to the target.
+/// A target's weights over their pressure-weighted mean, Σ w p* / Σ p*. So a common factor of the
+/// weights has no effect, and if all pressure has the same weight, the fit is that without weights.
+/// Weights below kLeastShare of the largest count as 0. Keeps a reference to the target.
 class CellWeights {
  public:
   static constexpr double kLeastShare = 1e-6;
@@ -20,8 +20,8 @@ class CellWeights {
 
   /// Weight of cell i over the mean, at most 1/kLeastShare; exactly 1 where all weights are 1.
   double operator[](std::size_t i) const { return share(i) / mean_; }
-  /// Whether enough pressure counts: more than kLeastShare of what would count if all weights were
-  /// the largest.
+  /// Returns whether the weighted pressure is more than kLeastShare of its value if all weights
+  /// were the largest.
   bool any_pressure() const { return any_pressure_; }
 
  private:

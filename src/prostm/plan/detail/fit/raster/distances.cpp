@@ -48,7 +48,7 @@ void NearestCentres(std::span<const float> x, std::span<const float> y,
   for (std::size_t i = 0; i + step <= n; i += step) {
     NearestOf(d, x, y, centre_x, centre_y, i, nearest);
   }
-  // the last vector may repeat some points
+  // the last vector may overlap the one before it
   if (n % step != 0) NearestOf(d, x, y, centre_x, centre_y, n - step, nearest);
 }
 

@@ -51,7 +51,7 @@ class NodePairs {
   void add(const NodePair& pair) {
     packed_[size_++] = static_cast<std::uint32_t>(pair.first | pair.second << 16U);
   }
-  /// Forgets the pairs for which keep(pair) is false.
+  /// Removes the pairs for which keep(pair) is false.
   template <typename Keep>
   void filter(const Keep& keep) {
     std::size_t kept = 0;
@@ -67,7 +67,7 @@ class NodePairs {
   NodePair operator[](std::size_t i) const { return {packed_[i] & 0xffffU, packed_[i] >> 16U}; }
 
  private:
-  std::vector<std::uint32_t> packed_;  // with room for a vector behind the last
+  std::vector<std::uint32_t> packed_;  // with room for one vector past the end
   std::size_t size_ = 0;
 };
 

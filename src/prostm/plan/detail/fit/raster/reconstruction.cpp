@@ -7,7 +7,7 @@
 namespace prostm::planning {
 namespace {
 
-constexpr int kSweeps = 8;  // each shrinks the error of the pressures about fourfold
+constexpr int kSweeps = 8;  // each reduces the error of the pressures by a factor of about 4
 
 struct Closest {
   float distance2 = std::numeric_limits<float>::max();
@@ -37,7 +37,7 @@ Closest closest_segment(const Loops& loops, float x, float y) {
   return best;
 }
 
-/// Finds the closest points, and adds up the normal equations.
+/// Finds the closest points, and accumulates the normal equations.
 void fit_cells(const CellTiles& cells, const Loops& loops, float sigma,
                ReconstructionScratch& scratch) {
   const float falloff = -0.5F / (sigma * sigma);
@@ -80,7 +80,7 @@ float pull_segments(const CellTiles& cells, const Loops& loops,
       const float residual = fit.phi[c] * p - cell.pressure[c];
       error += static_cast<double>(cell.weight[c] * residual * residual);
       const float common = 2.0F * cell.weight[c] * residual * fit.phi[c];
-      // (P12): pressure that is not within reach of a path
+      // (P12): pressure out of reach of all paths
       const float lack = std::max(1.0F - fit.phi[c] / kReach, 0.0F);
       const float wl = settings.weight_coverage * cell.weight[c] * cell.pressure[c];
       error += static_cast<double>(wl * lack);
@@ -111,7 +111,8 @@ void ReconstructionScratch::clear(const Loops& loops) {
 
 namespace {
 
-/// Runs the sweeps with the number of lanes known, so that the lanes of a sample become one vector.
+/// Runs the sweeps. The number of lanes is a template parameter, so that a sample's lanes become
+/// one vector.
 template <std::size_t kLanes>
 void sweep(const Loops& loops, const PressureEquations& equations, const NodeArray& inverse,
            const PlayBounds& bounds, NodeArray& pressure) {
@@ -132,8 +133,8 @@ void sweep(const Loops& loops, const PressureEquations& equations, const NodeArr
       pressure[a + k] = pressure[a + k] < most[k] ? pressure[a + k] : most[k];
     }
   };
-  // red-black if the number of samples is even, so that the nodes of a sweep do not wait for each
-  // other
+  // red-black order if the number of samples is even, so that the updates of a half-sweep are
+  // independent
   for (int round = 0; round < kSweeps; ++round) {
     for (std::size_t a = 0; a < n; a += 2 * kLanes) relax(a);
     for (std::size_t a = kLanes; a < n; a += 2 * kLanes) relax(a);

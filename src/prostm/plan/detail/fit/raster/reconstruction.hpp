@@ -1,5 +1,5 @@
 #pragma once
-/// The reconstruction error of Eq. (1) and its gradient, with the sample pressures solved for.
+/// The reconstruction error of Eq. (1) at the optimal sample pressures, and its gradient.
 
 #include <array>
 #include <cstddef>
@@ -12,16 +12,16 @@
 
 namespace prostm::planning {
 
-/// φ below e^kLeastExponent (farther than about 5 σ) counts as 0: its squares would be denormal.
+/// φ below e^kLeastExponent (beyond about 5 σ) counts as 0: its squares would be denormal.
 inline constexpr float kLeastExponent = -14.0F;
 
-/// φ from which a cell counts as covered, that of a distance of 0.57 σ. With less, paths render the
-/// field of σ as well, but a narrower focus leaves gaps.
+/// Value of φ from which a cell counts as covered, at a distance of 0.57 σ. A lower value renders
+/// the field of σ as well, but leaves gaps if the focus is narrower than σ.
 inline constexpr float kReach = 0.85F;
 
 struct ReconstructionSettings {
   float sigma = 8.6F;             ///< σ of Eq. (1) [mm]
-  float smoothing = 0.01F;        ///< λ of (P11), which ties neighbouring pressures together
+  float smoothing = 0.01F;        ///< λ of (P11), on differences of neighbouring pressures
   float weight_coverage = 0.12F;  ///< weight of (P12)
   PlayBounds bounds = PlayBounds::all(1.0F, kAnySlope);  ///< bounds of the p_i, (P18)
 };
@@ -34,7 +34,7 @@ struct Reconstruction {
   alignas(64) NodeArray gradient_y;
 };
 
-/// Buffers of a call, sized once.
+/// Buffers of a call, allocated once.
 struct ReconstructionScratch {
   explicit ReconstructionScratch(std::size_t max_tiles);
 
@@ -52,14 +52,14 @@ struct ReconstructionScratch {
   void clear(const Loops& loops);
 };
 
-/// The results that a call fills in.
+/// The results that a call computes.
 enum class Wanted { Pressures, PressuresAndGradient };
 
 /// Computes the minimum over 0 ≤ p ≤ most of Σ w (p̂ − p*)² + λ Σ (p_{i+1} − p_i)² (P11), plus
 /// (P12) and the cost of steep pressures (P18). p̂ is Eq. (1) at the closest point over all
-/// segments, with p linear along them. The gradient is exact where no cell changes its closest
-/// segment and no pressure its bound.
-/// @param wanted with Pressures alone, the error and its gradient stay as they are.
+/// segments, with p linear along them. The gradient is exact as long as no cell changes its closest
+/// segment and no pressure enters or leaves a bound.
+/// @param wanted with Pressures, the error and its gradient are left unchanged.
 using ReconstructFunction = void (*)(const CellTiles& cells, const Loops& loops,
                                      const ReconstructionSettings& settings, Wanted wanted,
                                      ReconstructionScratch& scratch, Reconstruction& out);
@@ -76,8 +76,7 @@ ReconstructFunction fast_reconstruct();
 /// too steep; shared by the kernels.
 void solve_pressures(const Loops& loops, const ReconstructionSettings& settings,
                      const ReconstructionScratch& scratch, Reconstruction& out);
-/// Gathers the gradient from segments to nodes, and adds the shares of the smoothing and of (P18)
-/// to the error.
+/// Sums the gradient of the segments at the nodes, and adds the smoothing and (P18) to the error.
 void gather_gradient(const Loops& loops, const ReconstructionSettings& settings,
                      const ReconstructionScratch& scratch, Reconstruction& out);
 

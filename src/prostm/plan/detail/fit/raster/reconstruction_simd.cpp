@@ -30,13 +30,13 @@ using VI = hn::Vec<DI>;
 constexpr std::size_t kMaxLanes = 8;
 constexpr float kFar = 1e9F;  // midpoint of the segments that fill up the last vector [mm]
 
-/// Four quantities of a segment side by side, since the lanes of a vector ask for different
+/// Four quantities of a segment, adjacent in memory, since the lanes of a vector load different
 /// segments.
 struct alignas(16) Quartet {
   float value[4];
 };
 
-/// The quartets at the indices of a vector's lanes, one vector for each quantity.
+/// The quartets of the segments in a vector's lanes, one vector for each quantity.
 struct Quartets {
   V value[4];
 };
@@ -44,7 +44,7 @@ struct Quartets {
 HWY_INLINE Quartets gather(const Quartet* from, const std::int32_t* indices) {
   const D d;
 #if HWY_MAX_BYTES >= 32
-  // loads fill the rows of two 4×4 blocks, which are then transposed: faster than gathers
+  // load the rows of two 4×4 blocks, then transpose them: faster than gathers
   const hn::Half<D> half;
   const auto row = [&](std::size_t lane) HWY_ATTR {
     return hn::Combine(d, hn::Load(half, from[indices[lane + 4]].value),
@@ -72,7 +72,7 @@ struct Segments {
   alignas(64) float mid_x[kCapacity], mid_y[kCapacity], half[kCapacity], distance2[kCapacity];
   alignas(64) float ax[kCapacity], ay[kCapacity], ex[kCapacity], ey[kCapacity], inverse[kCapacity];
   alignas(64) std::int32_t node[kCapacity], candidate[kCapacity];
-  Quartet edge[kCapacity];  // ax, ay, ex, ey once more
+  Quartet edge[kCapacity];  // copy of ax, ay, ex, ey
 };
 
 HWY_INLINE void collect(const Loops& loops, Segments& s) {
@@ -106,7 +106,7 @@ HWY_INLINE void collect(const Loops& loops, Segments& s) {
   }
 }
 
-/// Writes the segments that can be closest to a cell of the tile. @return how many.
+/// Writes the segments that can be closest to a cell of the tile. @return their number.
 HWY_INLINE std::size_t select(const CellTile& tile, Segments& s) {
   const D d;
   const DI di;
@@ -168,7 +168,7 @@ HWY_INLINE void fit_tile(const CellTile& tile, float sigma, Segments& s,
       best = hn::Min(distance2, best);
       chosen = hn::IfThenElse(closer, hn::Set(di, s.candidate[j]), chosen);
     }
-    // recompute for the chosen segment: cheaper than carrying all of it along
+    // recompute for the chosen segment: cheaper than keeping all values in the search
     hn::Store(chosen, di, segment + c);
     const Quartets edge = gather(s.edge, segment + c);
     const V ex = edge.value[2], ey = edge.value[3];
@@ -220,7 +220,7 @@ HWY_INLINE V pull_tile(const CellTile& tile, const ReconstructionScratch::TileFi
     const V w = hn::Load(d, tile.weight + c), wr = hn::Mul(w, residual);
     error = hn::MulAdd(wr, residual, error);
 
-    // (P12): pressure that is not within reach of a path
+    // (P12): pressure out of reach of all paths
     const V target = hn::Load(d, tile.pressure + c);
     const V lack = hn::Max(hn::NegMulAdd(phi, per_reach, one), zero);
     const V wl = hn::Mul(hn::Set(d, settings.weight_coverage), hn::Mul(w, target));

@@ -10,7 +10,7 @@
 // after the line above, which includes this file once for each target
 #include <hwy/highway.h>
 
-// The code does not branch on which cells count, since that is hard to predict.
+// The code does not branch on which cells have weight, since that is hard to predict.
 HWY_BEFORE_NAMESPACE();
 namespace prostm::planning {
 namespace HWY_NAMESPACE {
@@ -61,7 +61,7 @@ void FillTiles(const BlockRow& blocks, std::size_t half, std::span<CellTile> til
   }
 }
 
-/// Returns whether any cell counts.
+/// Returns whether any cell has weight.
 HWY_INLINE bool any_counts(const CellTile& tile) {
   const D d;
   V most = hn::Zero(d);

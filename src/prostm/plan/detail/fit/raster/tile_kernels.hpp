@@ -30,18 +30,18 @@ struct TileSums {
   double square_norm = 0.0;  ///< Σ weight · pressure²
 };
 
-/// Takes out the tiles without skin that counts. Sets each other tile's circle about its cells that
-/// count, and moves its other cells to the centre.
+/// Removes the tiles in which no cell has weight. For every other tile, computes the circle around
+/// its cells with weight, and moves its other cells to the circle's centre.
 TileSums complete_tiles(std::vector<CellTile>& tiles, MeanWeights& mean_weight);
 
-/// Positions and weighted pressures of cells, with room for eight more behind the last.
+/// Positions and weighted pressures of cells, with room for eight more past the end.
 struct CellList {
   float *x, *y, *pressure;
 };
 
-/// Writes the cells of a tile that count and whose weighted pressure is at least `threshold`, in
-/// order. @param mean_weight of the cells; null: all 1. @param allowed cells that may be written, a
-/// bit each. @return the number of cells written.
+/// Writes the cells of a tile that have weight and a weighted pressure of at least `threshold`, in
+/// order. @param mean_weight mean weight of each cell; null: all 1. @param allowed bit set of the
+/// cells that may be written. @return the number of cells written.
 std::size_t list_strong_cells(const CellTile& tile, const float* mean_weight, float threshold,
                               unsigned allowed, const CellList& list);
 

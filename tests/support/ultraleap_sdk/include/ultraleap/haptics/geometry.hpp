@@ -1,5 +1,5 @@
 #pragma once
-/// Points and transforms of the stand-in. Lengths are metres.
+/// Points and transforms of the stand-in. Lengths are in metres.
 
 #include <chrono>
 #include <cmath>
@@ -30,7 +30,7 @@ struct Transform {
   }
 };
 
-/// A point that the array focuses on. Keeps its values from sample to sample.
+/// A focal point of the array. It keeps its values between samples.
 class ControlPoint {
  public:
   Vector3 getPosition() const { return position_; }

@@ -15,7 +15,7 @@ enum class AdjustRate : std::uint32_t { None, AsRequired, All };
 
 class OutputInterval;
 
-/// A sample's time, at which the control points can be set.
+/// Time of a sample, at which the control points can be set.
 class TimePointOnOutputInterval : public LocalTimePoint {
  public:
   TimePointOnOutputInterval(LocalTimePoint time, OutputInterval& interval)
