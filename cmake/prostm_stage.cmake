@@ -1,6 +1,6 @@
 # Headers that most sources include and that take longest to read are precompiled, once for the libraries and once for
-# the tests. Every source still includes what it uses: -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds too. nlohmann/json.hpp
-# is not among them: g++ instantiates half a second of it in every source that sees it, even unused.
+# the tests. Every source still includes what it uses, which tools/check_includes.py checks. nlohmann/json.hpp is not among
+# them: g++ instantiates half a second of it in every source that sees it, even unused.
 set(prostm_slow_headers <Eigen/Core> <Eigen/Geometry> <boost/container/static_vector.hpp> <algorithm> <chrono> <complex>
     <condition_variable> <functional> <memory> <mutex> <optional> <random> <span> <string> <thread> <variant> <vector>)
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "acoustics/skin_loops.hpp"
 #include "prostm/acoustics/skin/skin_stepper.hpp"

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "prostm/core/file/advisory_lock.hpp"
 #include "prostm/core/file/file.hpp"

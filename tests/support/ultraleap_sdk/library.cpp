@@ -1,5 +1,6 @@
 // Libraries, devices and controls of the stand-in.
 #include <algorithm>
+#include <optional>
 
 #include "world.hpp"
 

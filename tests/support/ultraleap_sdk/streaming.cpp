@@ -1,5 +1,6 @@
 // Emissions of the stand-in.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "world.hpp"
