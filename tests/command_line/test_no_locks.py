@@ -76,5 +76,5 @@ def test_a_participants_file_is_limited_to_one_run_at_a_time(program, prostm, re
     wait_for(lambda: lines() > before)
     process.send_signal(signal.SIGINT)
     said, _ = process.communicate(timeout=60)
-    assert "since --take-over is given" in said
+    assert "because --take-over is given" in said
     assert not lock.exists()

@@ -104,7 +104,7 @@ def on_a_terminal(program, folder, *arguments, kind="xterm"):
 
 @pytest.mark.parametrize("arguments, first_word", [
     ([*SMALL, "--as-fast-as-possible", "--seconds", "3"], "3.0 s of the scene"),
-    (["capture", "--grid", "32", "--frames", "20", "--out", "c.h5"], "20 fields"),
+    (["capture", "--grid", "32", "--frames", "20", "--out", "c.h5"], "recorded 20 fields"),
 ])
 def test_the_progress_line_is_erased_before_other_output(program, tmp_path, arguments, first_word):
     shown = on_a_terminal(program, tmp_path, *arguments)
@@ -159,7 +159,7 @@ def test_a_missing_tracker_is_reported_at_once_and_in_the_exit_status(program, t
     line = running.stdout.readline()
     assert time.monotonic() - begun < 3.0
     for words in [f"No tracker yet: nothing answers at leap://127.0.0.1:{port}; ", "UltraleapTrackingWebSocket", "6437",
-                  "tries again"]:
+                  "keeps trying"]:
         assert words in line
     out, errors = running.communicate(timeout=60)
     assert running.returncode == 3 and errors == ""

@@ -179,7 +179,7 @@ STUDY = ["study", "run", "short.toml", "--view-port", "0", "--participant"]
     (SHORT.replace('question = "One?"', ""), ["[scene.one-plume] has no question"]),
     (SHORT.replace("one-plume", "fog"), ["[scene.fog]", "still-air"]),
     (SHORT[:SHORT.index("[method")], ["0 [method.NAME]"]),
-    (SHORT + "[method.b.pipeline]\ndevice = \"sim\"\n", ["[method.b] gives pipeline.device", "command line"]),
+    (SHORT + "[method.b.pipeline]\ndevice = \"sim\"\n", ["[method.b] sets pipeline.device", "command line"]),
     (SHORT[:100], ["p.toml"]),
 ], ids=["syntax", "table", "bounds", "question", "scene", "methods", "device", "half"])
 def test_an_invalid_protocol_is_rejected_with_its_place(refuses, tmp_path, text, words):

@@ -116,7 +116,7 @@ TEST_F(LockFiles, OfOtherHostsAndContainersRequireTheOption) {
     leave(change);
     EXPECT_THAT(refusal(), AllOf(HasSubstr("give --force"), HasSubstr(lock_)));
     EXPECT_TRUE(std::filesystem::exists(lock_));
-    EXPECT_THAT(notice(ForeignLock::Replaced), HasSubstr("since --force is given"));
+    EXPECT_THAT(notice(ForeignLock::Replaced), HasSubstr("because --force is given"));
     EXPECT_FALSE(std::filesystem::exists(lock_));
   }
   leave({{"host", "lab-2"}});

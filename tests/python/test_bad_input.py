@@ -99,7 +99,7 @@ def test_settings_of_another_type(name, value):
 
 
 def test_a_cell_size_given_twice(field, tmp_path):
-    with pytest.raises(ValueError, match="contains the size of a cell"):
+    with pytest.raises(ValueError, match="has its own cell size"):
         prostm.plan(field, cell_mm=5)
     with pytest.raises(ValueError, match="cell_mm"):
         prostm.plan(tmp_path / "x.npy", cell=5e-3)

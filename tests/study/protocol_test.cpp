@@ -61,7 +61,8 @@ TEST(Protocol, ErrorsAreReportedWithTheirLine) {
   EXPECT_THAT(refusal("[trials]\nrepeats = 0\n"), HasSubstr("line 2: trials.repeats"));
   EXPECT_THAT(refusal("[trials]\ngate = \"on\"\n"), HasSubstr("required"));
   EXPECT_THAT(refusal(kScenes), HasSubstr("0 [method.NAME]"));
-  EXPECT_THAT(refusal("[scene.one-plume]\nquestion = \"?\"\n" + kMethods), HasSubstr("needs 2"));
+  EXPECT_THAT(refusal("[scene.one-plume]\nquestion = \"?\"\n" + kMethods),
+              HasSubstr("needs at least 2"));
   EXPECT_THAT(refusal("scene = 3\n"), HasSubstr("line 1: scene must be tables"));
   EXPECT_THAT(refusal("[method]\nam = 1\n" + kScenes),
               HasSubstr("line 2: method.am must be a table"));
@@ -74,7 +75,7 @@ TEST(Protocol, ErrorsAreReportedWithTheirLine) {
               HasSubstr("line 6: pipeline.method"));
   EXPECT_THAT(refusal(kScenes + "[method.am.plna]\n"), HasSubstr("did you mean"));
   EXPECT_THAT(refusal(kScenes + "[method.am.pipeline]\nscene = \"ring\"\n"),
-              HasSubstr("[method.am] gives pipeline.scene"));
+              HasSubstr("[method.am] sets pipeline.scene"));
   EXPECT_THAT(refusal("[study\n"), HasSubstr("not valid TOML"));
 }
 

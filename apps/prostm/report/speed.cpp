@@ -79,7 +79,8 @@ constexpr std::array kSolvers = {
 std::vector<Vec3> random_foci(Random& random) {
   std::vector<Vec3> foci;
   while (foci.size() < 4) {
-    const Vec3 p(random.uniform(-0.06, 0.06), random.uniform(-0.06, 0.06), 0.2);
+    const double y = random.uniform(-0.06, 0.06), x = random.uniform(-0.06, 0.06);
+    const Vec3 p(x, y, 0.2);
     const bool apart =
         std::ranges::all_of(foci, [&](const Vec3& other) { return (p - other).norm() > 0.015; });
     if (apart) foci.push_back(p);

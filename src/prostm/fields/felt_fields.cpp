@@ -87,7 +87,9 @@ Pattern2 speckle(Random& random) {
   };
   std::vector<Spot> spots(static_cast<std::size_t>(10 + random.below(7)));
   for (Spot& spot : spots) {
-    spot.at = Vec2(random.uniform(-0.05, 0.05), random.uniform(-0.06, 0.06));
+    // one after the other, so that no compiler changes their order
+    spot.at.y() = random.uniform(-0.06, 0.06);
+    spot.at.x() = random.uniform(-0.05, 0.05);
     spot.sigma = random.uniform(4e-3, 8e-3);
     spot.strength = random.uniform(0.3, 1.0);
   }
@@ -252,8 +254,9 @@ TargetField felt_field(FeltKind kind, std::uint64_t seed, Outline outline) {
       std::find(kUnseenKinds.begin(), kUnseenKinds.end(), kind) != kUnseenKinds.end();
   const Pattern2 pattern = unseen ? unseen_pattern(kind, random) : seen_pattern(kind, random);
   constexpr double kAside = 0.010;  // largest distance from the palm's centre [m]
-  const Vec2 centre =
-      palm_of(outline) + Vec2(random.uniform(-kAside, kAside), random.uniform(-kAside, kAside));
+  Vec2 centre = palm_of(outline);
+  centre.y() += random.uniform(-kAside, kAside);
+  centre.x() += random.uniform(-kAside, kAside);
   const double angle = random.uniform(0.0, 2.0 * kPi);
   const Vec2 along = unit(angle), across(-along.y(), along.x());
   TargetField field = raster_of(outline);

@@ -16,8 +16,10 @@ constexpr double kSpeed = 7.0;                   // [m/s]
 MovingFoci::MovingFoci(std::uint64_t seed, int count, double apart) {
   Random random(seed);
   while (static_cast<int>(paths_.size()) < count) {
-    const Vec3 centre(random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05),
-                      random.uniform(0.18, 0.22));
+    // one after the other, so that no compiler changes their order
+    const double z = random.uniform(0.18, 0.22), y = random.uniform(-0.05, 0.05),
+                 x = random.uniform(-0.05, 0.05);
+    const Vec3 centre(x, y, z);
     bool far = true;
     for (const Path& other : paths_) {
       far = far && (centre - other.centre).head<2>().norm() > apart;
