@@ -55,7 +55,7 @@ TEST(RealtimeLimits, ALimitPreventsLockingTheMemory) {
 }
 
 TEST(RealtimeLimits, WithoutALimitTheMemoryIsLocked) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef PROSTM_SANITIZED
   GTEST_SKIP() << "sanitizers prevent locking of memory";
 #endif
   EXPECT_EQ(in_child([] {

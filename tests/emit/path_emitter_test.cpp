@@ -446,7 +446,7 @@ LiftedPlan random_plan(Random& random, double near) {
 }
 
 TEST(PathEmitter, GuaranteesHoldForAnySequenceOfPlans) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef PROSTM_SANITIZED
   constexpr int kRounds = 5, kBlocks = 1000;
 #else
   constexpr int kRounds = 50, kBlocks = 2000;  // 10⁵ blocks

@@ -15,7 +15,7 @@
 namespace prostm {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef PROSTM_SANITIZED
 constexpr double kSeconds = 2.0;
 #else
 constexpr double kSeconds = 8.0;

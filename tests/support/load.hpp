@@ -8,7 +8,7 @@ namespace prostm::test {
 
 /// Returns `count` in a plain build, and a twentieth of it under the address or thread sanitizer.
 constexpr std::uint64_t reduced(std::uint64_t count) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef PROSTM_SANITIZED
   return count / 20;
 #else
   return count;
