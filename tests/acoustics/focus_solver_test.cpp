@@ -32,8 +32,10 @@ FocusSettings with(FocusMethod method) {
 std::vector<Vec3> random_foci(Random& random, int count, double apart) {
   std::vector<Vec3> foci;
   while (static_cast<int>(foci.size()) < count) {
-    const Vec3 p(random.uniform(-0.06, 0.06), random.uniform(-0.06, 0.06),
-                 random.uniform(0.15, 0.25));
+    // one after the other, so that no compiler changes their order
+    const double z = random.uniform(0.15, 0.25), y = random.uniform(-0.06, 0.06),
+                 x = random.uniform(-0.06, 0.06);
+    const Vec3 p(x, y, z);
     bool far = true;
     for (const Vec3& other : foci) far = far && (p - other).norm() > apart;
     if (far) foci.push_back(p);
