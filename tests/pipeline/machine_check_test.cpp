@@ -18,8 +18,8 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 /// Five seconds with one set of options.
-Trial trial(const CheckedSetup& setup, bool holds) {
-  Trial trial;
+MachineTrial trial(const CheckedSetup& setup, bool holds) {
+  MachineTrial trial;
   trial.setup = setup;
   RunSummary& s = trial.summary;
   s.seconds = s.took = 5.0;
@@ -36,7 +36,7 @@ Trial trial(const CheckedSetup& setup, bool holds) {
 
 /// The verdict on a machine that is just fast enough for this grid and preset.
 MachineAnswer of_machine(int cells, Preset preset, const std::vector<std::string>& scenes) {
-  std::vector<Trial> trials;
+  std::vector<MachineTrial> trials;
   for (const CheckedSetup& setup : checked_setups(scenes)) {
     const bool holds = setup.cells <= cells && (setup.preset == preset || preset == Preset::Best);
     trials.push_back(trial(setup, holds));

@@ -61,8 +61,8 @@ class Watch final : public RunObserver {
   RunSummary summary_;  // the best possible one at the end
 };
 
-Trial make_trial(const CheckedSetup& setup, const std::optional<std::string>& scene, double seconds,
-                 const Interrupt& interrupt) {
+MachineTrial make_trial(const CheckedSetup& setup, const std::optional<std::string>& scene,
+                        double seconds, const Interrupt& interrupt) {
   PipelineSettings settings = make_settings({}, scene, true);
   settings.scripted_hand.still = true;  // always there
   settings.fluid.cells = setup.cells;
@@ -73,23 +73,23 @@ Trial make_trial(const CheckedSetup& setup, const std::optional<std::string>& sc
   Watch watch(pipeline, settings, seconds, progress, interrupt);
   RunOptions options;
   options.seconds = seconds;
-  Trial trial{setup, run(pipeline, settings, options, watch), {}};
+  MachineTrial trial{setup, run(pipeline, settings, options, watch), {}};
   if (trial.summary.failure) std::rethrow_exception(trial.summary.failure);
   trial.verdict = verdict_of(trial.summary, settings);
   return trial;
 }
 
 /// Makes trials from the defaults to the cheapest setup, until one holds or the time is up.
-std::vector<Trial> make_trials(std::FILE* out, const std::optional<std::string>& scene,
-                               std::span<const CheckedSetup> setups, const StageTimer& since_start,
-                               const Interrupt& interrupt) {
-  std::vector<Trial> trials;
+std::vector<MachineTrial> make_trials(std::FILE* out, const std::optional<std::string>& scene,
+                                      std::span<const CheckedSetup> setups,
+                                      const StageTimer& since_start, const Interrupt& interrupt) {
+  std::vector<MachineTrial> trials;
   for (std::size_t i = 0; i < setups.size(); ++i) {
     const double left = kAll - since_start.seconds();
     const double seconds =
         std::clamp(left / static_cast<double>(setups.size() - i), kShortest, kLongest);
     if (seconds > left) break;
-    Trial trial = make_trial(setups[i], scene, seconds, interrupt);
+    MachineTrial trial = make_trial(setups[i], scene, seconds, interrupt);
     if (interrupt.requested()) break;
     fmt::print(out, "{}: {}, {}{}\n", options_of(setups[i]), trial.holds() ? "held" : "not held",
                rates_text(trial.summary, {}),
@@ -114,7 +114,7 @@ void print_machine(std::FILE* out, const Machine& m) {
   std::fflush(out);
 }
 
-nlohmann::ordered_json trial_json(const Trial& trial) {
+nlohmann::ordered_json trial_json(const MachineTrial& trial) {
   const RunSummary& s = trial.summary;
   return {{"grid", trial.setup.cells},
           {"preset", name_of(trial.setup.preset)},
@@ -132,12 +132,12 @@ nlohmann::ordered_json setup_json(const std::optional<CheckedSetup>& setup) {
   return {{"grid", setup->cells}, {"preset", name_of(setup->preset)}};
 }
 
-nlohmann::ordered_json check_json(const Machine& m, const std::vector<Trial>& trials,
+nlohmann::ordered_json check_json(const Machine& m, const std::vector<MachineTrial>& trials,
                                   const MachineAnswer& answer) {
   nlohmann::ordered_json scenes = nlohmann::ordered_json::object();
   for (const SceneAnswer& of : answer.scenes) scenes[of.scene] = setup_json(of.use);
   nlohmann::ordered_json tried = nlohmann::ordered_json::array();
-  for (const Trial& trial : trials) tried.push_back(trial_json(trial));
+  for (const MachineTrial& trial : trials) tried.push_back(trial_json(trial));
   return {{"format", "prostm-check/1"},
           {"defaults_hold", answer.defaults_hold},
           {"use", setup_json(answer.use)},
@@ -163,7 +163,8 @@ int check_command(const CheckOptionsGiven& given) {
   const std::vector<CheckedSetup> setups = checked_setups(scenes);
   const Machine machine = look_at_machine(kSleeps);
   print_machine(out, machine);
-  const std::vector<Trial> trials = make_trials(out, given.scene, setups, since_start, interrupt);
+  const std::vector<MachineTrial> trials =
+      make_trials(out, given.scene, setups, since_start, interrupt);
   if (interrupt.requested()) {
     fmt::print(out, "Stopped before the answer was known.\n");
     return interrupt.status();

@@ -95,13 +95,13 @@ std::string options_of(const CheckedSetup& setup) {
   return fmt::format("--grid {} --preset {}", setup.cells, name_of(setup.preset));
 }
 
-MachineAnswer answer_of(std::span<const Trial> trials, std::span<const std::string> scenes) {
+MachineAnswer answer_of(std::span<const MachineTrial> trials, std::span<const std::string> scenes) {
   MachineAnswer answer;
   if (trials.empty()) {
     answer.sentences.emplace_back("Nothing was tried: the machine was too slow to begin.");
     return answer;
   }
-  const Trial &first = trials.front(), &last = trials.back();
+  const MachineTrial &first = trials.front(), &last = trials.back();
   const PipelineSettings settings;
   const std::string rates =
       fmt::format("{:.0f} steps and {:.0f} plans a second", settings.world_rate,

@@ -26,7 +26,7 @@ std::vector<CheckedSetup> checked_setups(std::span<const std::string> scenes);
 /// Every scene with a stimulus.
 std::vector<std::string> stimulus_scenes();
 
-struct Trial {
+struct MachineTrial {
   CheckedSetup setup;
   RunSummary summary;
   Verdict verdict;
@@ -49,6 +49,6 @@ struct MachineAnswer {
 
 /// Derives the answer from trials. @param trials the trials of checked_setups() in their order; the
 /// first uses the defaults, and only the last may have held the rates.
-MachineAnswer answer_of(std::span<const Trial> trials, std::span<const std::string> scenes);
+MachineAnswer answer_of(std::span<const MachineTrial> trials, std::span<const std::string> scenes);
 
 }  // namespace prostm
