@@ -228,6 +228,26 @@ def check_file(root, file, layers, programs):
     return found
 
 
+def names_twice(root):
+    """Types that two files define in the namespace prostm: a program that links both breaks the one-definition rule."""
+    opening = re.compile(r"namespace ([\w:]*) ?\{")
+    definition = re.compile(r"(?:struct|class|enum class) (\w+)(?: final)?(?: :[^:].*)? \{")
+    first = {}
+    for path in sorted(file for top in ("src", "apps") for file in (root / top).rglob("*.[hc]pp")):
+        spaces = []
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if space := opening.match(line):
+                spaces.append(space[1])
+            elif line.startswith("}  // namespace") and spaces:
+                spaces.pop()
+            elif (found := definition.match(line)) and "" not in spaces:
+                name = "::".join([*spaces, found[1]])
+                place = f"{path.relative_to(root).as_posix()}:{number}"
+                if name in first:
+                    yield f"{place}: {name} is also the name of a type in {first[name]}"
+                first.setdefault(name, place)
+
+
 def check_tree(root):
     """Returns all violations below root, as 'file:line: message', sorted by file."""
     layers = read_layers(root)
@@ -254,7 +274,7 @@ def main():
         if not (root / needed).exists():
             print(f"check_layers: {root} has no {needed}", file=sys.stderr)
             return 2
-    lines = check_tree(root)
+    lines = [*check_tree(root), *names_twice(root)]
     for line in lines:
         print(line)
     if not lines:

@@ -125,6 +125,14 @@ def test_a_program_may_include_stages_linked_indirectly(tree):
     assert check(TOOL, tree(files))[0] == 0
 
 
+def test_a_type_of_one_name_in_two_files_is_listed(tree):
+    trial = "namespace prostm {\nstruct Trial {\n  int n;\n};\n}  // namespace prostm\n"
+    own = trial.replace("struct", "namespace {\nstruct").replace("};\n", "};\n}  // namespace\n")
+    root = tree([("src/prostm/plan/a.hpp", trial), ("src/prostm/score/b.hpp", trial), ("src/prostm/score/c.cpp", own)])
+    assert check(TOOL, root) == (1, [
+        "src/prostm/score/b.hpp:2: prostm::Trial is also the name of a type in src/prostm/plan/a.hpp:2"])
+
+
 def test_a_folder_without_sources_is_an_error(tmp_path):
     result = subprocess.run([sys.executable, str(TOOL), str(tmp_path)], capture_output=True, text=True)
     assert result.returncode == 2
