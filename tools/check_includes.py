@@ -12,6 +12,8 @@ import sys
 from functools import lru_cache
 from pathlib import Path
 
+from check_layers import without_text
+
 FOLDERS = ("src", "apps", "lab", "bench", "python", "fuzz", "tests")
 SEARCHED = ("src", "apps/prostm", "lab", "bench", "tests", "tests/support", "fuzz", "python", ".")
 # the headers of cmake/prostm_stage.cmake, with names that only they declare
@@ -39,7 +41,6 @@ NAMES = {
 ALSO = {"string": ("filesystem", "fstream", "sstream", "iostream"), "functional": ("memory",),
         "algorithm": ("ranges",), "complex": ("unsupported/Eigen/FFT",), "thread": ("stop_token",)}
 INCLUDE = re.compile(r'^\s*#include [<"]([^">]+)[">]', re.M)
-COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:[^"\\\n]|\\.)*"', re.S)
 
 
 class Checkout:
@@ -68,7 +69,7 @@ class Checkout:
 
     def missing(self, source):
         """(header, name) for each precompiled header that a source uses and does not reach."""
-        code = COMMENT_OR_TEXT.sub(" ", source.read_text())
+        code = without_text(source.read_text())
         reached = self.reach(source)
         for header, names in NAMES.items():
             use = re.search(names, code)

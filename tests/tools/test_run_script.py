@@ -167,6 +167,10 @@ def test_a_part_of_full_makes_only_its_own_build(shell):
     told = shell.call(f"{DRY}run_tests --full --only=asan").splitlines()
     assert told[:3] == ["configure release", "configure asan", "build asan all"]
     assert told[3].endswith("-R ^asan\\.") and len(told) == 4
+    (shell.root / "fuzz").mkdir()
+    (shell.root / "fuzz/plan_json_fuzz.cpp").write_text('#include "prostm/io/plan_file.hpp"\n')
+    told = shell.call(f"{DRY}run_tests --full --only=fuzz").splitlines()
+    assert told[:3] == ["configure release", "configure asan", "build asan plan_json_fuzz"] and len(told) == 4
     told = shell.call(f"{DRY}run_tests --full --only=checks").splitlines()
     assert told[0] == "configure release" and told[1].startswith("ctest ") and len(told) == 2
 
