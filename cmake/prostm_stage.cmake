@@ -4,6 +4,16 @@
 set(prostm_slow_headers <Eigen/Core> <Eigen/Geometry> <boost/container/static_vector.hpp> <algorithm> <chrono> <complex>
     <condition_variable> <functional> <memory> <mutex> <optional> <random> <span> <string> <thread> <variant> <vector>)
 
+# prostm_optimize_less(TARGET): options, JSON, messages and assertions take longest to optimize and gain nothing from it.
+# Targets with a common precompiled header are optimized alike.
+function(prostm_optimize_less target)
+  if(PROSTM_SANITIZE)
+    target_compile_options(${target} PRIVATE -O0)
+  else()
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release,RelWithDebInfo>:-O1>)
+  endif()
+endfunction()
+
 # prostm_precompile(TARGET HOST HEADER…): HOST is the target that makes the precompiled header; it has the flags of the
 # others, and no definition that one of them lacks
 function(prostm_precompile target host)
@@ -14,11 +24,17 @@ function(prostm_precompile target host)
   endif()
 endfunction()
 
-# the host of the libraries
+# the hosts of the libraries
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/slow_headers.cpp CONTENT "")
-add_library(prostm_slow_headers STATIC ${PROJECT_BINARY_DIR}/slow_headers.cpp)
-target_link_libraries(prostm_slow_headers PRIVATE Eigen3::Eigen Boost::headers Threads::Threads)
-prostm_precompile(prostm_slow_headers prostm_slow_headers ${prostm_slow_headers})
+foreach(host prostm_slow_headers prostm_slow_headers_of_text)
+  add_library(${host} STATIC EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/slow_headers.cpp)
+  target_link_libraries(${host} PRIVATE Eigen3::Eigen Boost::headers Threads::Threads)
+  prostm_precompile(${host} ${host} ${prostm_slow_headers})
+endforeach()
+prostm_optimize_less(prostm_slow_headers_of_text)
+# What the sanitizers optimize less: stages, and tests of stages, that mostly handle text.
+set(prostm_text_stages track report study viewer)
+set(prostm_text_tests core device figure io report study track ultraleap viewer)
 
 # prostm_stage(NAME …): one static library per folder of src/prostm/, with its subfolders. tools/check_layers.py checks
 # which folder may include which.
@@ -30,7 +46,12 @@ function(prostm_stage name)
   target_compile_features(prostm_${name} PUBLIC cxx_std_20)
   target_include_directories(prostm_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
   target_link_libraries(prostm_${name} ${ARGN})
-  prostm_precompile(prostm_${name} prostm_slow_headers)
+  if(PROSTM_SANITIZE AND name IN_LIST prostm_text_stages)
+    prostm_optimize_less(prostm_${name})
+    prostm_precompile(prostm_${name} prostm_slow_headers_of_text)
+  else()
+    prostm_precompile(prostm_${name} prostm_slow_headers)
+  endif()
 endfunction()
 
 # One test program per folder of tests/, from all *_test.cpp in it and its subfolders; each case is one ctest entry. The target prostm_tests
@@ -48,7 +69,13 @@ function(prostm_test name)
   if(sources)
     add_executable(test_${name} ${sources})
     target_link_libraries(test_${name} PRIVATE ${ARGN} prostm_test_support GTest::gmock)
-    prostm_precompile(test_${name} test_core ${prostm_slow_headers} <gmock/gmock.h> <gtest/gtest.h>)
+    set(host test_core)
+    if(PROSTM_SANITIZE AND NOT name IN_LIST prostm_text_tests)
+      set(host test_target)
+    else()
+      prostm_optimize_less(test_${name})
+    endif()
+    prostm_precompile(test_${name} ${host} ${prostm_slow_headers} <gmock/gmock.h> <gtest/gtest.h>)
     add_dependencies(prostm_tests test_${name})
     if(DEFINED prostm_alone_${name})
       gtest_discover_tests(test_${name} TEST_PREFIX "${name}." TEST_FILTER "${prostm_alone_${name}}"

@@ -9,6 +9,7 @@
 #include "../track/leap_json.hpp"
 #include "prostm/io/hand/hand_file.hpp"
 #include "support/input_errors.hpp"
+#include "support/load.hpp"
 #include "support/shared.hpp"
 
 namespace prostm {
@@ -226,7 +227,7 @@ TEST(HandFaults, ASingleFaultDiscardsItsHandOrItsFrame) {
       const Document good = document_of(leap, hands);
       const HandRecording expected = good.read();
       ASSERT_FALSE(expected.reading.faults.any()) << expected.reading.faults.first;
-      for (int n = 0; n < 2500; ++n) {
+      for (std::uint64_t n = 0; n < test::reduced(2500); ++n) {
         const std::vector<Fault>& of_hands = leap ? of_leap : of_neutral;
         const std::size_t kind = any(random, of_frames.size() + of_hands.size());
         const bool frame = kind < of_frames.size();

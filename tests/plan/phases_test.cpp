@@ -303,7 +303,8 @@ TEST(Phases, AreIndependentOfPositionAndAsGoodAtAnotherScale) {
       EXPECT_EQ(starts[k].reversed, of_moved[k].reversed);
       EXPECT_EQ(starts[k].reversed, of_larger[k].reversed);
     }
-    // points between corners round differently at another position, which decides between nearly equal starts
+    // points between corners round differently at another position, which decides between nearly
+    // equal starts
     EXPECT_NEAR(distance_over(of_moved, starts, loops_of(list), periods), 1.0, 1e-3);
     // the term that keeps costs finite does not scale, so the search may descend to another minimum
     EXPECT_GT(distance_over(of_larger, starts, loops_of(list), periods), 0.95);

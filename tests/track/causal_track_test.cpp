@@ -8,6 +8,7 @@
 #include "hands.hpp"
 #include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
+#include "support/load.hpp"
 
 namespace prostm {
 namespace {
@@ -176,7 +177,7 @@ TEST(CausalTrack, AnySequenceGivesFiniteBoundedHands) {
   const auto place = [&] {
     return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
   };
-  for (int sequence = 0; sequence < 100'000; ++sequence) {
+  for (std::uint64_t sequence = 0; sequence < test::reduced(100'000); ++sequence) {
     track.clear();
     double t = random.uniform(0.0, 1e4);
     for (int i = 0; i < 5; ++i, t += std::pow(10.0, random.uniform(-9.0, -1.0))) {

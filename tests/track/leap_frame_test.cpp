@@ -8,6 +8,7 @@
 
 #include "leap_json.hpp"
 #include "prostm/track/hand_source.hpp"
+#include "support/load.hpp"
 
 namespace prostm {
 namespace {
@@ -157,7 +158,7 @@ Hand any_posture(Side side, std::mt19937& random) {
 
 TEST(LeapFrame, EveryPostureIsReadWithAndWithoutBases) {
   std::mt19937 random(11);
-  for (int round = 0; round < 4000; ++round) {
+  for (std::uint64_t round = 0; round < test::reduced(4000); ++round) {
     const Side side = round % 2 == 0 ? Side::Left : Side::Right;
     std::normal_distribution<double> noise(0.0, round % 3 == 0 ? 1e-12 : 4e-4);
     HandFrame sent;
