@@ -32,7 +32,7 @@ foreach(host prostm_slow_headers prostm_slow_headers_of_text)
   prostm_precompile(${host} ${host} ${prostm_slow_headers})
 endforeach()
 prostm_optimize_less(prostm_slow_headers_of_text)
-# What the sanitizers optimize less: stages, and tests of stages, that mostly handle text.
+# Stages, and tests of stages, that mostly handle text: the sanitizers optimize them less.
 set(prostm_text_stages track report study viewer)
 set(prostm_text_tests core device figure io report study track ultraleap viewer)
 
