@@ -43,14 +43,10 @@ std::vector<Row> measure(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace prostm::bench;
-  CLI::App app("AM, the paper's baseline: updates a second, and its table of errors");
+  Program program("AM, the paper's baseline: updates a second, and its table of errors");
   Options options;
-  app.add_option("--frames", options.frames, "frames scored per field, spread over its sequence")
-      ->check(CLI::Range(1, 10'000))
-      ->capture_default_str();
-  app.add_option("--figure", options.figure,
-                 "draw target, STM and AM for each of FIELDS; .png, .svg or .pdf");
-  app.add_option("FIELDS", options.files,
-                 "recordings of prostm capture or field files, after the generated fields");
-  return run(app, argc, argv, [&] { return measure(options); });
+  program.option("--frames", options.frames, "frames scored per field, spread over its sequence", 1, 10'000);
+  program.option("--figure", options.figure, "draw target, STM and AM for each of FIELDS; .png, .svg or .pdf");
+  program.option("FIELDS", options.files, "recordings of prostm capture or field files, after the generated fields");
+  return program.run(argc, argv, [&] { return measure(options); });
 }

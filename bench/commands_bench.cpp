@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "program.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/stage_timer.hpp"
 
@@ -159,12 +160,10 @@ std::vector<Row> measure(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace prostm::bench;
-  CLI::App app("Whole commands on large input: time from program start to end");
+  Program program("Whole commands on large input: time from program start to end");
   Options options;
-  app.add_option("--program", options.program, "path of the prostm to measure");
-  app.add_option("--against", options.against, "path of another prostm, measured in turn");
-  app.add_option("--rounds", options.rounds, "runs of each command")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  return run(app, argc, argv, [&] { return measure(options); });
+  program.option("--program", options.program, "path of the prostm to measure");
+  program.option("--against", options.against, "path of another prostm, measured in turn");
+  program.option("--rounds", options.rounds, "runs of each command", 1, 100);
+  return program.run(argc, argv, [&] { return measure(options); });
 }

@@ -140,12 +140,10 @@ void measure_evaluations(std::vector<Row>& rows) {
 
 int main(int argc, char** argv) {
   using namespace prostm::bench;
-  CLI::App app("additional time for choosing pressures by the percept");
+  Program program("additional time for choosing pressures by the percept");
   int frames = 25;
-  app.add_option("--frames", frames, "frames of each generated sequence")
-      ->check(CLI::Range(2, 100))
-      ->capture_default_str();
-  return run(app, argc, argv, [&] {
+  program.option("--frames", frames, "frames of each generated sequence", 2, 100);
+  return program.run(argc, argv, [&] {
     std::vector<Row> rows;
     measure_evaluations(rows);
     for (const bool warm : {false, true}) measure_plans(frames, warm, false, rows);

@@ -185,15 +185,11 @@ std::vector<bench::Row> measure_latency(Options given) {
 }  // namespace prostm
 
 int main(int argc, char** argv) {
-  CLI::App app("The latency from a tracker's frame to the first sample planned from it.");
+  prostm::bench::Program program("The latency from a tracker's frame to the first sample planned from it.");
   prostm::Options given;
-  app.add_option("--hand", given.hand, "a recording, or scripted")->capture_default_str();
-  app.add_option("--scene", given.scene, "scene of the fluid")->capture_default_str();
-  app.add_option("--seconds", given.seconds, "duration of each run [s]")
-      ->check(CLI::Range(1.0, 3600.0))
-      ->capture_default_str();
-  app.add_option("--rounds", given.rounds, "rounds of all three arrangements in turn")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  return prostm::bench::run(app, argc, argv, [&] { return prostm::measure_latency(given); });
+  program.option("--hand", given.hand, "a recording, or scripted");
+  program.option("--scene", given.scene, "scene of the fluid");
+  program.option("--seconds", given.seconds, "duration of each run [s]", 1.0, 3600.0);
+  program.option("--rounds", given.rounds, "rounds of all three arrangements in turn", 1, 1000);
+  return program.run(argc, argv, [&] { return prostm::measure_latency(given); });
 }

@@ -118,8 +118,8 @@ std::vector<bench::Row> measure(const std::string& folder) {
 }  // namespace prostm
 
 int main(int argc, char** argv) {
-  CLI::App app("The error of predicted hands.");
+  prostm::bench::Program program("The error of predicted hands.");
   std::string folder = "../shared/data/hands";
-  app.add_option("--recordings", folder, "folder with recordings, NAME.hands.jsonl");
-  return prostm::bench::run(app, argc, argv, [&] { return prostm::measure(folder); });
+  program.option("--recordings", folder, "folder with recordings, NAME.hands.jsonl");
+  return program.run(argc, argv, [&] { return prostm::measure(folder); });
 }

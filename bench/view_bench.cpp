@@ -230,10 +230,8 @@ std::vector<bench::Row> view_rows(const Options& given) {
 
 int main(int argc, char** argv) {
   prostm::Options given;
-  CLI::App app("cost of viewing a run in the web page");
-  app.add_option("--seconds", given.seconds, "duration of each run [s]")
-      ->check(CLI::Range(1.0, 3600.0))
-      ->capture_default_str();
-  app.add_option("--scene", given.scene, "scene of the runs")->capture_default_str();
-  return prostm::bench::run(app, argc, argv, [&] { return prostm::view_rows(given); });
+  prostm::bench::Program program("cost of viewing a run in the web page");
+  program.option("--seconds", given.seconds, "duration of each run [s]", 1.0, 3600.0);
+  program.option("--scene", given.scene, "scene of the runs");
+  return program.run(argc, argv, [&] { return prostm::view_rows(given); });
 }

@@ -57,32 +57,26 @@ std::vector<Row> live_rows(const TransducerArray& array, const std::vector<Way>&
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("how well plans are felt, by the array's own field");
+  Program program("how well plans are felt, by the array's own field");
   std::vector<std::string> sets = {"gallery", "scout", "plumes", "new"}, only_ways, only_skins,
                            only_disturbances;
   std::string figure, keep;
   int most = 0, threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   bool each = false, quick = false, live = false;
-  app.add_option("--set", sets, "sets of fields: tuning, gallery, scout, plumes, new")
-      ->capture_default_str();
-  app.add_option("--ways", only_ways, "only these ways; the others are compared with the first");
-  app.add_option("--skins", only_skins, "only these skins; the first has all readouts");
-  app.add_option("--disturbances", only_disturbances, "only these disturbances");
-  app.add_flag("--live", live,
+  program.option("--set", sets, "sets of fields: tuning, gallery, scout, plumes, new");
+  program.option("--ways", only_ways, "only these ways; the others are compared with the first");
+  program.option("--skins", only_skins, "only these skins; the first has all readouts");
+  program.option("--disturbances", only_disturbances, "only these disturbances");
+  program.flag("--live", live,
                "plans that replace one another every 40 ms, felt in time, instead of the sets");
-  app.add_flag("--quick", quick, "only the first skin, and no disturbance");
-  app.add_option("--fields", most, "number of fields of each set; 0: all")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
-  app.add_option("--threads", threads, "number of fields that are judged at once")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  app.add_flag("--each", each, "print every field, too");
-  app.add_option("--keep", keep,
-                 "keep judgements of plans in this file, and use those in it; remove it when "
+  program.flag("--quick", quick, "only the first skin, and no disturbance");
+  program.option("--fields", most, "number of fields of each set; 0: all", 0, 1000);
+  program.option("--threads", threads, "number of fields that are judged at once", 1, 64);
+  program.flag("--each", each, "print every field, too");
+  program.option("--keep", keep, "keep judgements of plans in this file, and use those in it; remove it when "
                  "emission, acoustics or skin have changed");
-  app.add_option("--figure", figure, "draw fields of the last set, and their percepts");
-  return bench::run(app, argc, argv, [&] {
+  program.option("--figure", figure, "draw fields of the last set, and their percepts");
+  return program.run(argc, argv, [&] {
     if (!figure.empty()) check_figure(figure);
     const TransducerArray array = usx_array();
     std::vector<Way> all_ways = ways(array);

@@ -5,15 +5,11 @@
 
 int main(int argc, char** argv) {
   using namespace prostm;
-  CLI::App app("the numbers of the felt step, each halved and doubled");
+  bench::Program program("the numbers of the felt step, each halved and doubled");
   int fields = 96, fields_with_points = 12;
-  app.add_option("--fields", fields, "number of fields whose pressures are chosen")
-      ->check(CLI::Range(1, 100'000))
-      ->capture_default_str();
-  app.add_option("--point-fields", fields_with_points, "number of fields on which points move, too")
-      ->check(CLI::Range(1, 100'000))
-      ->capture_default_str();
-  return bench::run(app, argc, argv, [&] {
+  program.option("--fields", fields, "number of fields whose pressures are chosen", 1, 100'000);
+  program.option("--point-fields", fields_with_points, "number of fields on which points move, too", 1, 100'000);
+  return program.run(argc, argv, [&] {
     std::vector<bench::Row> rows;
     bench::compare_tunings(fields, false, rows);
     bench::compare_tunings(fields_with_points, true, rows);

@@ -7,16 +7,13 @@
 
 int main(int argc, char** argv) {
   using namespace prostm;
-  CLI::App app("ways to render a target, played by the array and felt by the skin");
+  bench::Program program("ways to render a target, played by the array and felt by the skin");
   int frames = 3;
   std::string figure, recording;
-  app.add_option("--frames", frames, "frames of each generated sequence, or of the recording")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  app.add_option("--recording", recording,
-                 "compare on frames of a recording's second half instead of generated fields");
-  app.add_option("--figure", figure, "draw each way's pressure on the skin, and its percept");
-  return bench::run(app, argc, argv, [&] {
+  program.option("--frames", frames, "frames of each generated sequence, or of the recording", 1, 100);
+  program.option("--recording", recording, "compare on frames of a recording's second half instead of generated fields");
+  program.option("--figure", figure, "draw each way's pressure on the skin, and its percept");
+  return program.run(argc, argv, [&] {
     if (!figure.empty()) check_figure(figure);
     std::vector<bench::Row> rows;
     bench::compare_ways(recording.empty() ? methods::generated_targets(frames)

@@ -6,7 +6,7 @@
 
 int main(int argc, char** argv) {
   using namespace prostm;
-  CLI::App app("the scenes' pressure on held hands");
+  bench::Program program("the scenes' pressure on held hands");
   std::string folder, only, curves;
   std::vector<std::string> scenes = {"four-plumes", "one-plume", "two-plumes", "three-plumes"};
   std::vector<int> cells = {64};
@@ -17,28 +17,21 @@ int main(int argc, char** argv) {
   std::string part(name_of(PressurePart::All));
   int frames = 250;
   double trim = JetSettings().trim_rate, tremor = 4.0;
-  app.add_option("--hands", folder, "folder with recorded hands");
-  app.add_option("--tremor-above", tremor,
-                 "use the recorded tremor above this frequency [Hz]; 0: none")
-      ->check(CLI::Range(0.0, 50.0))
-      ->capture_default_str();
-  app.add_option("--only", only, "cases whose name contains this");
-  app.add_option("--scenes", scenes, "scenes")->capture_default_str();
-  app.add_option("--cells", cells, "cells along each edge")->capture_default_str();
-  app.add_option("--steps", steps, "steps [ms]")->capture_default_str();
-  app.add_option("--width", width, "edge of the box [mm]")->capture_default_str();
-  app.add_option("--theta", theta, "weight of the pressure at the end of a path")
-      ->capture_default_str();
-  app.add_option("--substeps", substeps, "fluid steps per step")->capture_default_str();
-  app.add_option("--follow", follow, "what the box follows: palm or index");
-  app.add_option("--pressure-of", part, "pressure to use: all, smoke or movement")
-      ->capture_default_str();
-  app.add_option("--trim", trim, "rate of the jets' trim [1/s]")->capture_default_str();
-  app.add_option("--frames", frames, "frames of each case")
-      ->check(CLI::Range(1, 2000))
-      ->capture_default_str();
-  app.add_option("--curves", curves, "draw only the curves of refinement, into this picture");
-  return bench::run(app, argc, argv, [&] {
+  program.option("--hands", folder, "folder with recorded hands");
+  program.option("--tremor-above", tremor, "use the recorded tremor above this frequency [Hz]; 0: none", 0.0, 50.0);
+  program.option("--only", only, "cases whose name contains this");
+  program.option("--scenes", scenes, "scenes");
+  program.option("--cells", cells, "cells along each edge");
+  program.option("--steps", steps, "steps [ms]");
+  program.option("--width", width, "edge of the box [mm]");
+  program.option("--theta", theta, "weight of the pressure at the end of a path");
+  program.option("--substeps", substeps, "fluid steps per step");
+  program.option("--follow", follow, "what the box follows: palm or index");
+  program.option("--pressure-of", part, "pressure to use: all, smoke or movement");
+  program.option("--trim", trim, "rate of the jets' trim [1/s]");
+  program.option("--frames", frames, "frames of each case", 1, 2000);
+  program.option("--curves", curves, "draw only the curves of refinement, into this picture");
+  return program.run(argc, argv, [&] {
     std::vector<bench::Row> rows;
     if (!curves.empty()) {
       bench::draw_refinement(curves);

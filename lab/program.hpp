@@ -1,7 +1,8 @@
 #pragma once
-/// The main() of benchmarks that have options.
+/// The main() of benchmarks and labs that have options.
 
-#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,24 +10,32 @@
 
 namespace prostm::bench {
 
-/// Reads the options of `app` and --json FILE; prints and writes the rows that `measure` returns.
-/// @return 0, or 2 after a message about bad input.
-template <class Measure>
-int run(CLI::App& app, int argc, char** argv, Measure measure) {
-  std::string json;
-  app.add_option("--json", json, "write the rows as JSON");
-  try {
-    app.parse(argc, argv);
-    return print_and_write(measure(), json);
-  } catch (const CLI::CallForHelp&) {
-    fmt::print("{}", app.help());
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "{}: {}\n", argv[0], error.what());
-  } catch (const InputError& error) {
-    fmt::print(stderr, "{}: {}\n", argv[0], error.what());
-  }
-  return 2;
-}
+/// The options of a program, and its rows. Options keep their values as defaults, which --help shows.
+class Program {
+ public:
+  explicit Program(const std::string& help);
+  ~Program();
+
+  /// Adds an option, or, if the name has no dashes, the arguments that no option takes.
+  void option(const std::string& name, std::string& value, const std::string& help);
+  void option(const std::string& name, int& value, const std::string& help);
+  void option(const std::string& name, double& value, const std::string& help);
+  void option(const std::string& name, std::vector<std::string>& values, const std::string& help);
+  void option(const std::string& name, std::vector<int>& values, const std::string& help);
+  void option(const std::string& name, std::vector<double>& values, const std::string& help);
+  /// Adds an option with bounds, inclusive.
+  void option(const std::string& name, int& value, const std::string& help, int low, int high);
+  void option(const std::string& name, double& value, const std::string& help, double low,
+              double high);
+  void flag(const std::string& name, bool& value, const std::string& help);
+
+  /// Reads the options and --json FILE; prints and writes the rows that `measure` returns.
+  /// @return 0, or 2 after a message about bad input.
+  int run(int argc, char** argv, const std::function<std::vector<Row>()>& measure);
+
+ private:
+  struct Parser;
+  std::unique_ptr<Parser> parser_;
+};
 
 }  // namespace prostm::bench

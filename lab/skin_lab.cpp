@@ -7,12 +7,11 @@
 
 int main(int argc, char** argv) {
   using namespace prostm;
-  CLI::App app("the skin under moving focal points: published experiments");
+  bench::Program program("the skin under moving focal points: published experiments");
   std::string folder;
-  app.add_option("--figures", folder,
-                 "folder in which to draw skin-circles.png, skin-squares.png, skin-lines.png, "
+  program.option("--figures", folder, "folder in which to draw skin-circles.png, skin-squares.png, skin-lines.png, "
                  "skin-gap.png and skin-loops.png");
-  return bench::run(app, argc, argv, [&] {
+  return program.run(argc, argv, [&] {
     const auto figure = [&](const char* name) {
       return folder.empty() ? std::string() : folder + "/" + name;
     };

@@ -63,8 +63,8 @@ INSTANTIATE_TEST_SUITE_P(Stream, StreamOver, testing::Values(Over::Tcp, Over::Ud
                          [](const auto& p) { return p.param == Over::Tcp ? "Tcp" : "Udp"; });
 
 TEST_P(StreamOver, EverySampleArrivesWithItsTime) {
-  StreamDevice device = device_on_any_port();
   NumberedSource source(3);
+  StreamDevice device = device_on_any_port();
   ASSERT_EQ(device.start(source), DeviceStatus::Running);
   StreamClient client(GetParam(), device.port());
   const auto hello = client.subscribe();
@@ -113,8 +113,8 @@ TEST_P(StreamOver, EverySampleArrivesWithItsTime) {
 }
 
 TEST_P(StreamOver, WishesAreHonoured) {
-  StreamDevice device = device_on_any_port({.block_samples = 50});
   NumberedSource source(4);
+  StreamDevice device = device_on_any_port({.block_samples = 50});
   ASSERT_EQ(device.start(source), DeviceStatus::Running);
   StreamClient client(GetParam(), device.port());
   const auto hello = client.subscribe({.foci = 2, .stride = 64, .flags = 1});
@@ -199,6 +199,7 @@ TEST_P(StreamOver, TheEndOfTheProgramIsAnnounced) {
 }
 
 TEST_P(StreamOver, StatesAreSentAndHeartbeatsContinue) {
+  NumberedSource source(2), again(2);
   StreamDevice device = device_on_any_port();
   StreamClient client(GetParam(), device.port());
   ASSERT_TRUE(client.subscribe());
@@ -210,7 +211,6 @@ TEST_P(StreamOver, StatesAreSentAndHeartbeatsContinue) {
   };
   expect_state(0, 1);
   for (int i = 0; i < 20; ++i) EXPECT_TRUE(client.next_of(kHeartbeat));
-  NumberedSource source(2);
   ASSERT_EQ(device.start(source), DeviceStatus::Running);
   expect_state(2, 0);
   source.intensity = 0.0F;
@@ -226,7 +226,6 @@ TEST_P(StreamOver, StatesAreSentAndHeartbeatsContinue) {
   EXPECT_EQ(beat->at<std::int64_t>(8), sent);
 
   // sample indices continue across the session
-  NumberedSource again(2);
   ASSERT_EQ(device.start(again), DeviceStatus::Running);
   EXPECT_EQ(device.samples() / 1000, 0);
   const auto block = client.next_of(kBlock);
@@ -293,8 +292,8 @@ TEST(StreamDevice, DatagramsNeedTheTokenOfTheirAddress) {
 }
 
 TEST(StreamDevice, ALostDatagramShowsAsAGapInTheIndices) {
-  StreamDevice device = device_on_any_port();
   NumberedSource source(8);
+  StreamDevice device = device_on_any_port();
   ASSERT_EQ(device.start(source), DeviceStatus::Running);
   // a receiver with a small buffer that pauses reading
   StreamClient client(Over::Udp, device.port(), 4096);
@@ -312,8 +311,8 @@ TEST(StreamDevice, ALostDatagramShowsAsAGapInTheIndices) {
 }
 
 TEST(StreamDevice, ASlowReaderIsSkippedAndDelaysNoOther) {
-  StreamDevice device = device_on_any_port();
   NumberedSource source(8);
+  StreamDevice device = device_on_any_port();
   ASSERT_EQ(device.start(source), DeviceStatus::Running);
   StreamClient slow(Over::Tcp, device.port(), 4096), quick(Over::Tcp, device.port());
   ASSERT_TRUE(slow.subscribe());
@@ -424,8 +423,8 @@ TEST(StreamDevice, WrongDatagramsAreAnsweredOrIgnored) {
 }
 
 TEST(StreamDevice, StillServesAfterAHundredThousandRandomMessages) {
-  StreamDevice device = device_on_any_port();
   NumberedSource source;
+  StreamDevice device = device_on_any_port();
   ASSERT_EQ(device.start(source), DeviceStatus::Running);
   Random random(11);
   StreamClient datagrams(Over::Udp, device.port());

@@ -85,8 +85,8 @@ TEST(StreamLoops, ArriveCompleteAndInStepWithTheSamples) {
 }
 
 TEST(StreamLoops, AreRejectedWhileAStreamPlays) {
-  StreamDevice device({}, {"127.0.0.1", 0});
   test::NumberedSource source;
+  StreamDevice device({}, {"127.0.0.1", 0});
   ASSERT_EQ(device.start(source), DeviceStatus::Running);
   EXPECT_EQ(device.load_segment(loop_of(10, 2, 0.0F), 2), DeviceStatus::Refused);
   EXPECT_THAT(device.problem(), testing::HasSubstr("stop it first"));
