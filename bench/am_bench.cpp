@@ -45,8 +45,11 @@ int main(int argc, char** argv) {
   using namespace prostm::bench;
   Program program("AM, the paper's baseline: updates a second, and its table of errors");
   Options options;
-  program.option("--frames", options.frames, "frames scored per field, spread over its sequence", 1, 10'000);
-  program.option("--figure", options.figure, "draw target, STM and AM for each of FIELDS; .png, .svg or .pdf");
-  program.option("FIELDS", options.files, "recordings of prostm capture or field files, after the generated fields");
+  program.option("--frames", options.frames, "frames scored per field, spread over its sequence", 1,
+                 10'000);
+  program.option("--figure", options.figure,
+                 "draw target, STM and AM for each of FIELDS; .png, .svg or .pdf");
+  program.option("FIELDS", options.files,
+                 "recordings of prostm capture or field files, after the generated fields");
   return program.run(argc, argv, [&] { return measure(options); });
 }

@@ -185,7 +185,8 @@ std::vector<bench::Row> measure_latency(Options given) {
 }  // namespace prostm
 
 int main(int argc, char** argv) {
-  prostm::bench::Program program("The latency from a tracker's frame to the first sample planned from it.");
+  prostm::bench::Program program(
+      "The latency from a tracker's frame to the first sample planned from it.");
   prostm::Options given;
   program.option("--hand", given.hand, "a recording, or scripted");
   program.option("--scene", given.scene, "scene of the fluid");

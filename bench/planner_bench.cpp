@@ -76,14 +76,19 @@ std::vector<Row> measure_all(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace prostm::bench;
-  Program program("every preset on generated or given fields, beside a textbook planner and controls");
+  Program program(
+      "every preset on generated or given fields, beside a textbook planner and controls");
   Options options;
-  program.option("--frames", options.quality.frames, "frames scored per field, spread over its sequence", 1, 10'000);
-  program.option("--seeds", options.quality.seeds, "seeds of the textbook planner; the median counts", 1, 1000);
-  program.option("--vectors", options.vectors, "best vector instructions to use: AVX2, SSE4, …, none");
+  program.option("--frames", options.quality.frames,
+                 "frames scored per field, spread over its sequence", 1, 10'000);
+  program.option("--seeds", options.quality.seeds,
+                 "seeds of the textbook planner; the median counts", 1, 1000);
+  program.option("--vectors", options.vectors,
+                 "best vector instructions to use: AVX2, SSE4, …, none");
   program.option("--figure", options.figure, "draw the gallery; .png, .svg or .pdf");
   program.option("--scaling-figure", options.scaling_figure, "draw time against size");
   program.option("--bending-figure", options.bending_figure, "draw error against corners");
-  program.option("FIELDS", options.files, "recordings of prostm capture or field files, in place of the generated fields");
+  program.option("FIELDS", options.files,
+                 "recordings of prostm capture or field files, in place of the generated fields");
   return program.run(argc, argv, [&] { return measure_all(options); });
 }

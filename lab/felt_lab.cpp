@@ -73,7 +73,8 @@ int main(int argc, char** argv) {
   program.option("--fields", most, "number of fields of each set; 0: all", 0, 1000);
   program.option("--threads", threads, "number of fields that are judged at once", 1, 64);
   program.flag("--each", each, "print every field, too");
-  program.option("--keep", keep, "keep judgements of plans in this file, and use those in it; remove it when "
+  program.option("--keep", keep,
+                 "keep judgements of plans in this file, and use those in it; remove it when "
                  "emission, acoustics or skin have changed");
   program.option("--figure", figure, "draw fields of the last set, and their percepts");
   return program.run(argc, argv, [&] {

@@ -10,8 +10,10 @@ int main(int argc, char** argv) {
   bench::Program program("ways to render a target, played by the array and felt by the skin");
   int frames = 3;
   std::string figure, recording;
-  program.option("--frames", frames, "frames of each generated sequence, or of the recording", 1, 100);
-  program.option("--recording", recording, "compare on frames of a recording's second half instead of generated fields");
+  program.option("--frames", frames, "frames of each generated sequence, or of the recording", 1,
+                 100);
+  program.option("--recording", recording,
+                 "compare on frames of a recording's second half instead of generated fields");
   program.option("--figure", figure, "draw each way's pressure on the skin, and its percept");
   return program.run(argc, argv, [&] {
     if (!figure.empty()) check_figure(figure);

@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
   int frames = 250;
   double trim = JetSettings().trim_rate, tremor = 4.0;
   program.option("--hands", folder, "folder with recorded hands");
-  program.option("--tremor-above", tremor, "use the recorded tremor above this frequency [Hz]; 0: none", 0.0, 50.0);
+  program.option("--tremor-above", tremor,
+                 "use the recorded tremor above this frequency [Hz]; 0: none", 0.0, 50.0);
   program.option("--only", only, "cases whose name contains this");
   program.option("--scenes", scenes, "scenes");
   program.option("--cells", cells, "cells along each edge");

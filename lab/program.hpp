@@ -10,7 +10,8 @@
 
 namespace prostm::bench {
 
-/// The options of a program, and its rows. Options keep their values as defaults, which --help shows.
+/// The options of a program, and its rows. Options keep their values as defaults, which --help
+/// shows.
 class Program {
  public:
   explicit Program(const std::string& help);

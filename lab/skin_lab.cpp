@@ -9,7 +9,8 @@ int main(int argc, char** argv) {
   using namespace prostm;
   bench::Program program("the skin under moving focal points: published experiments");
   std::string folder;
-  program.option("--figures", folder, "folder in which to draw skin-circles.png, skin-squares.png, skin-lines.png, "
+  program.option("--figures", folder,
+                 "folder in which to draw skin-circles.png, skin-squares.png, skin-lines.png, "
                  "skin-gap.png and skin-loops.png");
   return program.run(argc, argv, [&] {
     const auto figure = [&](const char* name) {
