@@ -5,7 +5,8 @@ set(prostm_slow_headers <Eigen/Core> <Eigen/Geometry> <boost/container/static_ve
     <condition_variable> <functional> <memory> <mutex> <optional> <random> <span> <string> <thread> <variant> <vector>)
 
 # prostm_optimize_less(TARGET): options, JSON, messages and assertions take longest to optimize and gain nothing from it.
-# Targets with a common precompiled header are optimized alike.
+# Not for what is installed: where a program and a library both compile an inline function, the linker keeps the
+# program's. Targets with a common precompiled header are optimized alike.
 function(prostm_optimize_less target)
   if(PROSTM_SANITIZE)
     target_compile_options(${target} PRIVATE -O0)
