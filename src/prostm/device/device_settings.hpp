@@ -12,21 +12,32 @@ namespace prostm {
 /// A value type: copies are independent. References stay valid for the object's lifetime.
 class DeviceSettings {
  public:
+  DeviceSettings();
+  DeviceSettings(const DeviceSettings& other);
+  DeviceSettings(DeviceSettings&& other) noexcept;
+  DeviceSettings& operator=(const DeviceSettings& other);
+  DeviceSettings& operator=(DeviceSettings&& other) noexcept;
+  ~DeviceSettings();
+
   /// The settings of type S, initially its defaults.
   template <class S>
   S& of() {
-    std::any& held = held_[typeid(S)];
+    std::any& held = held_of(typeid(S));
     if (!held.has_value()) held = S();
     return *std::any_cast<S>(&held);
   }
   template <class S>
   const S& of() const {
     static const S kDefaults{};
-    const auto found = held_.find(typeid(S));
-    return found == held_.end() ? kDefaults : *std::any_cast<S>(&found->second);
+    const std::any* held = find(typeid(S));
+    return held == nullptr ? kDefaults : *std::any_cast<S>(held);
   }
 
  private:
+  // compiled once: the settings of every stage are copied in many places
+  std::any& held_of(std::type_index type);
+  const std::any* find(std::type_index type) const;
+
   std::map<std::type_index, std::any> held_;
 };
 
