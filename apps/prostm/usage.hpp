@@ -1,8 +1,12 @@
 #pragma once
 /// Messages about a command line that cannot be parsed, and help on request.
 
-#include <CLI/CLI.hpp>
 #include <string>
+
+namespace CLI {
+class App;
+class ParseError;
+}  // namespace CLI
 
 namespace prostm::app {
 

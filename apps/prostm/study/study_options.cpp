@@ -8,210 +8,200 @@
 namespace prostm::app {
 namespace {
 
-void add_study_run(CLI::App& study, Work& work) {
-  auto* command = study.add_subcommand("run", "lead a participant through a protocol");
+void add_study_run(Command study, Work& work) {
+  auto command = study.add_command("run", "lead a participant through a protocol");
   auto o = std::make_shared<StudyRunOptionsGiven>();
   RunOptionsGiven& run = o->run;
-  add_input(*command, run.common.files, "protocol", o->protocol,
+  add_input(command, run.common.files, "protocol", o->protocol,
             "what is presented and asked (.toml, docs/study/study.md)")
-      ->required();
-  command->add_option("--participant", o->participant, "number of the participant, from 1")
-      ->type_name("NUMBER")
-      ->required();
-  command->add_option("--answers", o->folder, "folder of the response files")
-      ->type_name("FOLDER")
-      ->capture_default_str();
+      .required();
+  command.add_option("--participant", o->participant, "number of the participant, from 1")
+      .type_name("NUMBER")
+      .required();
+  command.add_option("--answers", o->folder, "folder of the response files")
+      .type_name("FOLDER")
+      .show_default();
   command
-      ->add_option(
+      .add_option(
           "--replaces", o->replaces,
           "replace this participant, with the same methods and orders; analyse then leaves the "
           "replaced one out")
-      ->type_name("NUMBER");
-  command->add_flag("--resume", o->resume, "resume the session of a participant who has begun");
-  command->add_flag("--take-over", o->take_over,
-                    "replace the lock file of a run on another machine that has ended");
-  command->add_option("--rehearse", o->rehearse,
-                      "rehearse without a person: answer so many trials at random (0: all); the "
-                      "file's name begins with rehearsal");
+      .type_name("NUMBER");
+  command.add_flag("--resume", o->resume, "resume the session of a participant who has begun");
+  command.add_flag("--take-over", o->take_over,
+                   "replace the lock file of a run on another machine that has ended");
+  command.add_option("--rehearse", o->rehearse,
+                     "rehearse without a person: answer so many trials at random (0: all); the "
+                     "file's name begins with rehearsal");
   command
-      ->add_option("--markers", o->markers,
-                   "send a marker when each stimulus begins and ends: udp://HOST:PORT or "
-                   "serial:///dev/ttyUSB0:BAUD (docs/study/study.md); may be given 8 times")
-      ->type_name("ADDRESS")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
+      .add_option("--markers", o->markers,
+                  "send a marker when each stimulus begins and ends: udp://HOST:PORT or "
+                  "serial:///dev/ttyUSB0:BAUD (docs/study/study.md); may be given 8 times")
+      .type_name("ADDRESS")
+      .repeatable();
   run.hand = "study";
-  add_hand(*command, run.common, run.hand, run.hand_size);
-  add_input(*command, run.common.files, "--settings", run.common.settings_file,
+  add_hand(command, run.common, run.hand, run.hand_size);
+  add_input(command, run.common.files, "--settings", run.common.settings_file,
             "settings that all methods begin with, a TOML file (docs/reference/files.md)");
-  add_device(*command, run.common);
-  add_array(*command, run.common);
-  add_lock_memory(*command, run.lock_memory);
-  add_address(*command, run);
-  command->footer(
+  add_device(command, run.common);
+  add_array(command, run.common);
+  add_lock_memory(command, run.lock_memory);
+  add_address(command, run);
+  command.footer(
       "Example:\n  prostm study run data/protocols/one-plume-or-four.toml --participant 1 --hand "
       "leap://127.0.0.1:6437");
-  command->callback([o, &work] {
-    work = {&o->run.common.files, [o] { return study_run_command(*o); }};
-  });
+  set_work(command, work, o->run.common.files, [o] { return study_run_command(*o); });
 }
 
-void add_study_check(CLI::App& study, Work& work) {
-  auto* command = study.add_subcommand(
+void add_study_check(Command study, Work& work) {
+  auto command = study.add_command(
       "check",
       "validate a protocol and print what is presented; every level must be played as written");
   auto o = std::make_shared<StudyCheckOptionsGiven>();
-  add_input(*command, o->common.files, "protocol", o->protocol,
+  add_input(command, o->common.files, "protocol", o->protocol,
             "what is presented and asked (.toml, docs/study/study.md)")
-      ->required();
-  add_input(*command, o->common.files, "--settings", o->common.settings_file,
+      .required();
+  add_input(command, o->common.files, "--settings", o->common.settings_file,
             "settings that all methods begin with, a TOML file (docs/reference/files.md)");
-  add_device(*command, o->common);
-  add_array(*command, o->common);
-  add_json(*command, o->common.files, o->common.json);
-  command->footer("Example:\n  prostm study check data/protocols/continuity.toml");
-  command->callback([o, &work] {
-    work = {&o->common.files, [o] { return study_check_command(*o); }};
-  });
+  add_device(command, o->common);
+  add_array(command, o->common);
+  add_json(command, o->common.files, o->common.json);
+  command.footer("Example:\n  prostm study check data/protocols/continuity.toml");
+  set_work(command, work, o->common.files, [o] { return study_check_command(*o); });
 }
 
-void add_status(CLI::App& study, Work& work) {
-  auto* command = study.add_subcommand("status", "show how full each group is, and who took part");
+void add_status(Command study, Work& work) {
+  auto command = study.add_command("status", "show how full each group is, and who took part");
   auto o = std::make_shared<StudyStatusOptionsGiven>();
   command
-      ->add_option("answers", o->answers, "folders of prostm study run --answers, or files in them")
-      ->type_name("FOLDER|INPUT")
-      ->capture_default_str();
-  add_json(*command, o->files, o->json);
-  command->footer("Example:\n  prostm study status answers");
-  command->callback([o, &work] { work = {&o->files, [o] { return study_status_command(*o); }}; });
+      .add_option("answers", o->answers, "folders of prostm study run --answers, or files in them")
+      .type_name("FOLDER|INPUT")
+      .show_default();
+  add_json(command, o->files, o->json);
+  command.footer("Example:\n  prostm study status answers");
+  set_work(command, work, o->files, [o] { return study_status_command(*o); });
 }
 
 /// Adds the options for reading files of answers.
-void add_reading(CLI::App& command, ReadingSettings& reading) {
+void add_reading(Command command, ReadingSettings& reading) {
   command
       .add_option("--columns", reading.columns,
                   "names of a table's columns, as correct=key_resp.corr,participant=subject; "
                   "NAME:=VALUE for all rows")
-      ->type_name("NAME=COLUMN,…");
+      .type_name("NAME=COLUMN,…");
   command
-      .add_option_function<std::string>(
+      .add_option(
           "--prefix",
           [&reading](const std::string& name) {
             reading.prefix = from_name<IdPrefix>(name, "--prefix");
           },
           "prefix of participants' names: folder or file, which keeps equal numbers in different "
           "files apart; none, one name is one person")
-      ->type_name("none|folder|file");
+      .type_name("none|folder|file");
   command
       .add_option(
           "--rename", reading.rename,
           "change a name, as participant:01=1, method:A=am or scene:S1=one-plume; may be given "
           "several times")
-      ->type_name("KIND:OLD=NEW")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
+      .type_name("KIND:OLD=NEW")
+      .repeatable();
   command.add_flag("--merge-spellings", reading.merge_spellings,
                    "treat names that differ only in spelling (01 and 1) as the same");
   command.add_flag("--pool", reading.pool, "pool answers to different stimuli with the same name");
 }
 
-void add_analyse(CLI::App& study, Work& work) {
-  auto* command =
-      study.add_subcommand("analyse", "analyse answers: shares or thresholds, intervals and tests");
+void add_analyse(Command study, Work& work) {
+  auto command =
+      study.add_command("analyse", "analyse answers: shares or thresholds, intervals and tests");
   auto o = std::make_shared<AnalyseOptionsGiven>();
   add_input(
-      *command, o->files, "answers", o->answers,
+      command, o->files, "answers", o->answers,
       "participants' files of prostm study run (.jsonl), tables of answers (.csv, .tsv, .txt; "
       "docs/study/study-files.md), or the scores of the paper's Fig. 4 (.json)")
-      ->required();
-  add_reading(*command, o->reading);
-  command->add_option("--chance", o->settings.chance, "share of right answers by guessing")
-      ->capture_default_str();
+      .required();
+  add_reading(command, o->reading);
+  command.add_option("--chance", o->settings.chance, "share of right answers by guessing")
+      .show_default();
   command
-      ->add_option("--level", o->settings.level,
-                   "confidence level of intervals; tests use 1 minus it")
-      ->capture_default_str();
+      .add_option("--level", o->settings.level,
+                  "confidence level of intervals; tests use 1 minus it")
+      .show_default();
   command
-      ->add_option("--power", o->settings.power,
-                   "power for which the number of participants is computed")
-      ->capture_default_str();
-  command->add_option("--seed", o->settings.seed, "random seed for splits of many participants")
-      ->capture_default_str();
-  command->add_option("--guess", o->settings.guess,
-                      "share of right answers at low levels; default: --chance, or 0 where "
-                      "no answer is wrong");
-  command->add_option("--lapse", o->settings.lapse,
-                      "share of wrong answers at high levels; default: 0.02");
-  command->add_flag("--fit-lapse", o->settings.fit_lapse,
-                    "fit the lapse share to the answers, from 0 to 0.2");
-  add_json(*command, o->files, o->json);
-  add_output(*command, o->files, "--figure", o->figure, check_figure,
+      .add_option("--power", o->settings.power,
+                  "power for which the number of participants is computed")
+      .show_default();
+  command.add_option("--seed", o->settings.seed, "random seed for splits of many participants")
+      .show_default();
+  command.add_option("--guess", o->settings.guess,
+                     "share of right answers at low levels; default: --chance, or 0 where "
+                     "no answer is wrong");
+  command.add_option("--lapse", o->settings.lapse,
+                     "share of wrong answers at high levels; default: 0.02");
+  command.add_flag("--fit-lapse", o->settings.fit_lapse,
+                   "fit the lapse share to the answers, from 0 to 0.2");
+  add_json(command, o->files, o->json);
+  add_output(command, o->files, "--figure", o->figure, check_figure,
              "shares as the paper's Fig. 4, or psychometric functions where answers have levels "
              "(.png, .svg or .pdf)");
-  add_output(*command, o->files, "--tidy", o->tidy, check_csv_output,
+  add_output(command, o->files, "--tidy", o->tidy, check_csv_output,
              "write the answers as a table (.csv) for other programs (docs/study/study.md)");
-  command->footer(
+  command.footer(
       "Example:\n  prostm study analyse data/made-up-answers.csv --figure answers.svg --tidy "
       "tidy.csv");
-  command->callback([o, &work] { work = {&o->files, [o] { return analyse_command(*o); }}; });
+  set_work(command, work, o->files, [o] { return analyse_command(*o); });
 }
 
-void add_simulate(CLI::App& study, Work& work) {
-  auto* command = study.add_subcommand(
+void add_simulate(Command study, Work& work) {
+  auto command = study.add_command(
       "simulate",
       "simulate the paper's study with model observers in place of people; takes a minute");
   auto o = std::make_shared<SimulateOptionsGiven>();
   command
-      ->add_option("--participants", o->shape.participants,
-                   "number of participants with each method")
-      ->capture_default_str();
+      .add_option("--participants", o->shape.participants,
+                  "number of participants with each method")
+      .show_default();
   command
-      ->add_option("--trials", o->shape.trials, "trials of each participant, half with each scene")
-      ->capture_default_str();
-  command->add_option("--studies", o->studies, "number of simulated studies for the intervals")
-      ->capture_default_str();
+      .add_option("--trials", o->shape.trials, "trials of each participant, half with each scene")
+      .show_default();
+  command.add_option("--studies", o->studies, "number of simulated studies for the intervals")
+      .show_default();
   command
-      ->add_option("--hands", o->hands,
-                   "number of hands, of different size and tremor, to draw participants from")
-      ->capture_default_str();
-  add_name(*command, "--preset", o->preset,
+      .add_option("--hands", o->hands,
+                  "number of hands, of different size and tremor, to draw participants from")
+      .show_default();
+  add_name(command, "--preset", o->preset,
            "of pro-stm: " +
                listed(std::vector<std::string>(kNames<Preset>.begin(), kNames<Preset>.end())))
-      ->capture_default_str();
-  command->add_option("--noise", o->noise, "factor on the observers' own noise")
-      ->capture_default_str();
-  command->add_option("--grid", o->grid, "cells along each edge of the fluid's box")
-      ->capture_default_str();
-  command->add_option("--seed", o->seed, "random seed of hands and answers")->capture_default_str();
+      .show_default();
+  command.add_option("--noise", o->noise, "factor on the observers' own noise").show_default();
+  command.add_option("--grid", o->grid, "cells along each edge of the fluid's box").show_default();
+  command.add_option("--seed", o->seed, "random seed of hands and answers").show_default();
   command
-      ->add_option("--paper-data", o->paper_data,
-                   "folder with the paper's scores, fig4.json; default: " +
-                       std::string(kPaperData) + ", if it is there")
-      ->type_name("FOLDER")
-      ->each([o = o.get()](const std::string& folder) {
+      .add_option("--paper-data", o->paper_data,
+                  "folder with the paper's scores, fig4.json; default: " + std::string(kPaperData) +
+                      ", if it is there")
+      .type_name("FOLDER")
+      .each([o = o.get()](const std::string& folder) {
         o->files.reads("--paper-data", folder + "/fig4.json");
       });
-  add_output(*command, o->files, "--answers", o->answers, check_writable,
+  add_output(command, o->files, "--answers", o->answers, check_writable,
              "the answers of one simulated study of the observer skin (.csv), as prostm study "
              "analyse reads them");
-  add_json(*command, o->files, o->json);
-  command->footer("Example:\n  prostm study simulate --hands 1 --grid 32 --answers model.csv");
-  command->callback([o, &work] { work = {&o->files, [o] { return simulate_command(*o); }}; });
+  add_json(command, o->files, o->json);
+  command.footer("Example:\n  prostm study simulate --hands 1 --grid 32 --answers model.csv");
+  set_work(command, work, o->files, [o] { return simulate_command(*o); });
 }
 
 }  // namespace
 
-void add_study(CLI::App& app, Work& work) {
-  auto* study = app.add_subcommand("study", "a perceptual study, from its trials to its figures");
-  study->require_subcommand(1);
-  add_study_check(*study, work);
-  add_study_run(*study, work);
-  add_status(*study, work);
-  add_analyse(*study, work);
-  add_simulate(*study, work);
+void add_study(Command app, Work& work) {
+  auto study = app.add_command("study", "a perceptual study, from its trials to its figures");
+  study.require_command();
+  add_study_check(study, work);
+  add_study_run(study, work);
+  add_status(study, work);
+  add_analyse(study, work);
+  add_simulate(study, work);
 }
 
 }  // namespace prostm::app
