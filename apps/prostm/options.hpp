@@ -180,6 +180,15 @@ struct ReportOptionsGiven {
   bool quick = false, fresh = false;
 };
 
+struct ExperimentsOptionsGiven {
+  Files files;
+  std::vector<std::string> names;  ///< experiments; empty: all
+  std::string set;                 ///< fit or held-out; empty: both
+  std::string model, readout;      ///< empty: all
+  std::string fit;                 ///< file for the fitted parameters; empty: predict
+  std::string json, figure;
+};
+
 /// Each returns the exit status of the program; bad input is thrown as InputError or
 /// std::invalid_argument. The files that the options name have been checked.
 int run_command(const RunOptionsGiven& options);
@@ -199,6 +208,7 @@ int study_run_command(const StudyRunOptionsGiven& options);
 int study_status_command(const StudyStatusOptionsGiven& options);
 int analyse_command(const AnalyseOptionsGiven& options);
 int simulate_command(const SimulateOptionsGiven& options);
+int experiments_command(const ExperimentsOptionsGiven& options);
 int report_command(const ReportOptionsGiven& options);
 
 }  // namespace prostm::app

@@ -2,6 +2,7 @@
 
 #include "add_options.hpp"
 #include "common.hpp"
+#include "prostm/figure/figures.hpp"
 
 namespace prostm::app {
 namespace {
@@ -30,9 +31,27 @@ void add_report(Command app, Work& work) {
   set_work(command, work, o->files, [o] { return report_command(*o); });
 }
 
+void add_experiments(Command app, Work& work) {
+  auto command = app.add_command(
+      "experiments", "published experiments with people, and what models of touch predict for them");
+  auto o = std::make_shared<ExperimentsOptionsGiven>();
+  command.add_option("names", o->names, "experiments by name; default: all").type_name("NAME");
+  add_name(command, "--set", o->set, "only the experiments of this set: fit or held-out");
+  add_name(command, "--model", o->model, "only this percept model; default: all");
+  add_name(command, "--readout", o->readout, "only this readout: template or category");
+  add_output(command, o->files, "--fit", o->fit, check_json_output,
+             "fit the observers to the experiments of the set fit, and write their parameters");
+  add_json(command, o->files, o->json);
+  add_output(command, o->files, "--figure", o->figure, check_figure,
+             "draw published and predicted numbers, a chart for each experiment");
+  command.footer("Example:\n  prostm experiments howard-2023 --model peak");
+  set_work(command, work, o->files, [o] { return experiments_command(*o); });
+}
+
 }  // namespace
 
 void add_report_commands(Command app, Work& work) {
+  add_experiments(app, work);
   add_report(app, work);
 }
 

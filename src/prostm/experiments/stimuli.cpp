@@ -66,45 +66,77 @@ Lap line_lap(double length) {
 StmField::StmField(const TransducerArray& array, const Palm& palm)
     : array_(array), palm_(palm), to_palm_(propagation_to_palm(array, palm)) {}
 
-std::vector<double> StmField::pressure(const Lap& lap, double period, bool memoryless) const {
+/// The drives of focal points that move together.
+class StmField::Drives {
+ public:
+  Drives(const TransducerArray& array, double height) : array_(array), height_(height) {}
+
+  /// Computes the drives for these places, one for each transducer.
+  void at(const std::vector<Lap>& laps, double share, std::vector<std::complex<double>>& out) {
+    std::vector<Vec3> foci;
+    for (const Lap& lap : laps) {
+      const Vec2 x = lap(share);
+      foci.emplace_back(x.x(), x.y(), height_);
+    }
+    if (foci.size() == 1) {
+      phases_.resize(out.size());
+      focus_phases(array_, Medium{}, foci.front(), phases_);
+      for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::polar(1.0, phases_[i]);
+      return;
+    }
+    const Propagation g = propagation_to(array_, Medium{}, foci);
+    // a target beyond the array's output, so that the level is as high as possible
+    const FocusSolution solution =
+        solve_foci(g, Eigen::VectorXd::Constant(g.rows(), 1e5), {}, start_);
+    start_ = solution.pressure.array().arg();
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = solution.drive[static_cast<Eigen::Index>(i)];
+  }
+
+ private:
+  const TransducerArray& array_;
+  double height_;
+  std::vector<double> phases_;
+  Eigen::VectorXd start_;  // phases of the previous foci
+};
+
+std::vector<double> StmField::pressure(const std::vector<Lap>& laps, double period, int samples,
+                                       bool memoryless) const {
   const std::size_t count = array_.position.size();
-  const int per_sample = static_cast<int>(std::ceil(40e3 * period / kSamples));
+  const int per_sample = static_cast<int>(std::ceil(40e3 * period / samples));
+  const int in_all = samples * per_sample;
   TransducerSettings settings;
   settings.memoryless = memoryless;
-  settings.sample_rate = per_sample * kSamples / period;
+  settings.sample_rate = in_all / period;
   TransducerDynamics dynamics(settings, count);
 
-  const Medium air;
-  std::vector<double> phases(count);
-  std::vector<std::complex<double>> drives(count);
-  Eigen::MatrixXcd outputs(static_cast<Eigen::Index>(count), kSamples);
-  // initial laps, until the initial state has decayed: 12 time constants
-  const double fade = 12.0 * time_constant(settings);
-  const int laps_before = memoryless ? 0 : static_cast<int>(std::ceil(fade / period));
-  for (int n = 0; n < (laps_before + 1) * kSamples * per_sample; ++n) {
-    const int in_lap = n % (kSamples * per_sample);
-    if (n >= laps_before * kSamples * per_sample && n % per_sample == 0) {
-      // the output at this moment results from the drives up to it
-      outputs.col(in_lap / per_sample) = Eigen::Map<const Eigen::VectorXcd>(
-          dynamics.output().data(), static_cast<Eigen::Index>(count));
-    }
-    const Vec2 x = lap((in_lap + 0.5) / (kSamples * per_sample));
-    focus_phases(array_, air, Vec3(x.x(), x.y(), palm_.height), phases);
-    for (std::size_t i = 0; i < count; ++i) drives[i] = std::polar(1.0, phases[i]);
-    dynamics.step(drives);
+  const auto output = [&] {
+    return Eigen::Map<const Eigen::VectorXcd>(dynamics.output().data(),
+                                              static_cast<Eigen::Index>(count));
+  };
+  Drives drives(array_, palm_.height);
+  std::vector<std::complex<double>> drive(count);
+  Eigen::MatrixXcd outputs(static_cast<Eigen::Index>(count), samples);
+  // the drives before the lap, until the initial state has decayed: 12 time constants
+  const double fade = memoryless ? 0.0 : 12.0 * time_constant(settings);
+  const int before = static_cast<int>(std::ceil(fade * settings.sample_rate));
+  for (int n = -before; n < in_all; ++n) {
+    // the output at this moment results from the drives up to it
+    if (n >= 0 && n % per_sample == 0) outputs.col(n / per_sample) = output();
+    const int in_lap = (n % in_all + in_all) % in_all;
+    drives.at(laps, (in_lap + 0.5) / in_all, drive);
+    dynamics.step(drive);
   }
-  if (memoryless) {  // the output at the first moment is that of the last drive
-    outputs.col(0) = Eigen::Map<const Eigen::VectorXcd>(dynamics.output().data(),
-                                                        static_cast<Eigen::Index>(count));
-  }
+  // without a delay, the output at the first moment is that of the last drive
+  if (memoryless) outputs.col(0) = output();
 
   const Eigen::MatrixXcd field = to_palm_ * outputs;
+  const Medium air;
   std::vector<double> pressure;
-  pressure.reserve(palm_.cells() * kSamples);
-  for (Eigen::Index k = 0; k < kSamples; ++k) {
-    for (Eigen::Index c = 0; c < field.rows(); ++c) {
+  pressure.reserve(palm_.cells() * static_cast<std::size_t>(samples));
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    for (Eigen::Index c = 0; c < field.rows(); ++c)
       pressure.push_back(radiation_pressure(std::abs(field(c, k)), air));
-    }
   }
   return pressure;
 }

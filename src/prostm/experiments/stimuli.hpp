@@ -32,14 +32,21 @@ Lap line_lap(double length);
 /// Radiation pressure of the array at full drive over one lap: K·cells [Pa].
 class StmField {
  public:
-  static constexpr int kSamples = 96;  ///< K: harmonics up to the 47th
+  static constexpr int kSamples = 96;  ///< K of a fast lap: harmonics up to the 47th
 
   StmField(const TransducerArray& array, const Palm& palm);
   /// Computes the pressure over a lap. Drives change at 40 kHz or slightly faster, so that a lap is
-  /// a whole number of them. @param memoryless transducers without delay; otherwise (A9).
-  std::vector<double> pressure(const Lap& lap, double period, bool memoryless) const;
+  /// a whole number of them. @param laps one for each simultaneous focal point; two or more are
+  /// solved for equal pressures, (A16). @param samples K. @param memoryless transducers without
+  /// delay; otherwise (A9).
+  std::vector<double> pressure(const std::vector<Lap>& laps, double period, int samples,
+                               bool memoryless) const;
+  std::vector<double> pressure(const Lap& lap, double period, bool memoryless) const {
+    return pressure(std::vector{lap}, period, kSamples, memoryless);
+  }
 
  private:
+  class Drives;
   TransducerArray array_;
   Palm palm_;
   Eigen::MatrixXcd to_palm_;  // cells × transducers

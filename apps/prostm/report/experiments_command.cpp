@@ -1,0 +1,250 @@
+/// prostm experiments: published experiments, and what observers predict for them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common.hpp"
+#include "options.hpp"
+#include "prostm/core/file/file.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/text/nearest_name.hpp"
+#include "prostm/figure/figures.hpp"
+#include "prostm/psychophysics/fit.hpp"
+
+namespace prostm::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Chosen = std::vector<const Experiment*>;
+using Observers = std::vector<std::pair<PerceptModel, Readout>>;
+
+constexpr double kMostDrawn = 1e4;  // a prediction beyond it would hide the others
+
+/// Ends the computation after a signal.
+struct Stopped {};
+
+/// Returns the value that an option names; nothing if it is not given.
+template <class E>
+std::optional<E> option_value(const std::string& name, const char* option) {
+  if (name.empty()) return std::nullopt;
+  const auto value = value_named<E>(name);
+  if (!value) throw InputError(fmt::format("{} {}", option, must_be(name, kNames<E>)));
+  return value;
+}
+
+Chosen chosen_experiments(const ExperimentsOptionsGiven& options) {
+  const auto set = option_value<ExperimentSet>(options.set, "--set");
+  std::vector<std::string> known;
+  for (const Experiment& one : published_experiments()) known.push_back(one.id);
+  for (const std::string& name : options.names) {
+    if (std::ranges::find(known, name) == known.end())
+      throw InputError(fmt::format("there is no experiment \"{}\"{}; prostm experiments lists them",
+                                   shown_name(name), did_you_mean(name, known)));
+  }
+  Chosen out;
+  for (const Experiment& one : published_experiments()) {
+    const bool named =
+        options.names.empty() || std::ranges::find(options.names, one.id) != options.names.end();
+    if (named && (!set || one.set == *set)) out.push_back(&one);
+  }
+  if (out.empty()) throw InputError(fmt::format("no experiment of --set {} is named", options.set));
+  return out;
+}
+
+std::string number_text(const std::optional<double>& value) {
+  return value ? fmt::format("{:.3g}", *value) : "–";
+}
+
+/// "60.9 (52.3 to 69)", "above 0", "below 1.1".
+std::string published_text(const Cell& cell) {
+  if (cell.value) return fmt::format("{:.3g} ({:.3g} to {:.3g})", *cell.value, cell.low, cell.high);
+  if (std::isinf(cell.high)) return fmt::format("above {:.3g}", cell.low);
+  if (std::isinf(cell.low)) return fmt::format("below {:.3g}", cell.high);
+  return fmt::format("{:.3g} to {:.3g}", cell.low, cell.high);
+}
+
+/// The predictions of one observer for all experiments; of a guess without a name.
+struct Column {
+  std::string name;
+  std::vector<PredictedExperiment> experiments;
+};
+
+Json cell_json(const PredictedCell& of) {
+  const Cell& cell = *of.cell;
+  Json out = {{"name", cell.name}, {"task", name_of(cell.task)}};
+  out["published"] = cell.value ? Json(*cell.value) : Json(nullptr);
+  out["low"] = std::isinf(cell.low) ? Json(nullptr) : Json(cell.low);
+  out["high"] = std::isinf(cell.high) ? Json(nullptr) : Json(cell.high);
+  out["source"] = name_of(cell.source);
+  out["predicted"] = of.predicted ? Json(*of.predicted) : Json(nullptr);
+  out["within"] = of.within;
+  out["loss"] = of.loss;
+  return out;
+}
+
+Json column_json(const Column& column) {
+  const std::vector<PaperLoss> papers = paper_losses(column.experiments);
+  Json out = {{"observer", column.name},
+              {"loss_fit", sum_of(papers, ExperimentSet::Fit)},
+              {"loss_held_out", sum_of(papers, ExperimentSet::HeldOut)}};
+  for (const PaperLoss& paper : papers) out["papers"][paper.paper_id] = paper.loss;
+  for (const PredictedExperiment& one : column.experiments) {
+    Json& entry = out["experiments"].emplace_back();
+    entry = {{"id", one.experiment->id},
+             {"set", name_of(one.experiment->set)},
+             {"agrees", one.agrees},
+             {"loss", one.loss}};
+    for (const PredictedCell& cell : one.cells) entry["cells"].push_back(cell_json(cell));
+  }
+  return out;
+}
+
+void print_cells(std::FILE* out, const std::vector<Column>& columns) {
+  for (std::size_t e = 0; e < columns.front().experiments.size(); ++e) {
+    const Experiment& of = *columns.front().experiments[e].experiment;
+    fmt::print(out, "\n{}: {} ({})\n  {}\n  {}\n", of.id, of.title, name_of(of.set), of.paper,
+               of.note);
+    for (std::size_t c = 0; c < of.cells.size(); ++c) {
+      fmt::print(out, "  {:<44} published {}\n", of.cells[c].name, published_text(of.cells[c]));
+      for (const Column& column : columns) {
+        const PredictedCell& cell = column.experiments[e].cells[c];
+        if (!cell.predicted) continue;
+        fmt::print(out, "    {:<25} {:>9}{}\n", column.name, number_text(cell.predicted),
+                   cell.within ? "  within" : "");
+      }
+    }
+  }
+}
+
+/// Prints the loss of each paper with each observer, and the sums of both sets.
+void print_losses(std::FILE* out, const std::vector<Column>& columns) {
+  fmt::print(out,
+             "\nLoss of each paper (0: exact, 2: two standard errors off; * agrees), and sums\n");
+  for (const Column& column : columns) {
+    const std::vector<PaperLoss> papers = paper_losses(column.experiments);
+    fmt::print(out, "  {:<26}", column.name);
+    for (const PaperLoss& paper : papers) {
+      const bool agrees = std::ranges::all_of(column.experiments, [&](const auto& one) {
+        return one.experiment->paper_id != paper.paper_id || one.agrees;
+      });
+      fmt::print(out, " {} {:.2f}{}", paper.paper_id, paper.loss, agrees ? "*" : "");
+    }
+    fmt::print(out, "  fit {:.2f} held-out {:.2f}\n", sum_of(papers, ExperimentSet::Fit),
+               sum_of(papers, ExperimentSet::HeldOut));
+  }
+}
+
+/// The observers that the options choose.
+Observers chosen_observers(const ExperimentsOptionsGiven& options) {
+  const auto model = option_value<PerceptModel>(options.model, "--model");
+  const auto readout = option_value<Readout>(options.readout, "--readout");
+  Observers out;
+  for (std::size_t m = 0; m < kPerceptModels; ++m) {
+    for (const Readout one : {Readout::Template, Readout::Category}) {
+      const auto of = static_cast<PerceptModel>(m);
+      if ((!model || of == *model) && (!readout || one == *readout)) out.emplace_back(of, one);
+    }
+  }
+  return out;
+}
+
+/// Draws a chart for each experiment: the published numbers by their place in its list, and the
+/// predicted ones.
+void draw(const std::vector<Column>& columns, const std::string& path) {
+  constexpr std::size_t kInRow = 4;
+  std::vector<Chart> charts;
+  for (std::size_t e = 0; e < columns.front().experiments.size(); ++e) {
+    const PredictedExperiment& of = columns.front().experiments[e];
+    Chart chart{of.experiment->id, "number in its list", "value", false, {}, false};
+    ChartSeries published{"published", {}, {}};
+    for (std::size_t c = 0; c < of.cells.size(); ++c) {
+      const Cell& cell = *of.cells[c].cell;
+      const auto x = static_cast<double>(c + 1);
+      // a bound is drawn where it is
+      const double y = cell.value ? *cell.value : std::isinf(cell.low) ? cell.high : cell.low;
+      published.x.push_back(x);
+      published.y.push_back(y);
+    }
+    chart.series.push_back(published);
+    for (const Column& column : columns) {
+      ChartSeries predicted{column.name, {}, {}};
+      for (std::size_t c = 0; c < of.cells.size(); ++c) {
+        const auto& value = column.experiments[e].cells[c].predicted;
+        if (!value || std::abs(*value) > kMostDrawn) continue;
+        predicted.x.push_back(static_cast<double>(c + 1));
+        predicted.y.push_back(*value);
+      }
+      if (!predicted.x.empty()) chart.series.push_back(predicted);
+    }
+    charts.push_back(chart);
+  }
+  draw_charts(charts, path, kInRow);
+}
+
+/// Returns the predictions of a guess and of the chosen observers.
+std::vector<Column> predicted_columns(Laboratory& laboratory, const Chosen& experiments,
+                                      const Observers& chosen) {
+  std::vector<Column> columns = {{"guess", {}}};
+  for (const Experiment* one : experiments)
+    columns.front().experiments.push_back(predict(laboratory, nullptr, *one));
+  for (const FittedObserver& of : frozen_observers()) {
+    if (std::ranges::find(chosen, std::pair(of.model, of.readout)) == chosen.end()) continue;
+    const Observer observer = of.observer();
+    Column& column = columns.emplace_back(Column{of.name(), {}});
+    for (const Experiment* one : experiments)
+      column.experiments.push_back(predict(laboratory, &observer, *one));
+  }
+  return columns;
+}
+
+int fit(const ExperimentsOptionsGiven& options, Laboratory& laboratory, Progress& progress) {
+  Chosen experiments;
+  for (const Experiment& one : published_experiments())
+    if (one.set == ExperimentSet::Fit) experiments.push_back(&one);
+  std::vector<FittedObserver> fitted;
+  for (const auto& [model, readout] : chosen_observers(options)) {
+    fitted.push_back(fit_observer(laboratory, model, readout, experiments));
+    progress.clear();
+    const FittedObserver& of = fitted.back();
+    fmt::print(prose(options.json), "{:<26} loss {:.3f}, threshold {:.3g}, noise {:.3g}\n",
+               of.name(), of.loss, of.parameters.threshold, of.parameters.noise);
+  }
+  write_file(options.fit, observers_text(fitted, experiments));
+  say_written(prose(options.json), options.fit);
+  return 0;
+}
+
+}  // namespace
+
+int experiments_command(const ExperimentsOptionsGiven& options) {
+  std::FILE* out = prose(options.json);
+  const Chosen experiments = chosen_experiments(options);
+  const auto chosen = chosen_observers(options);
+  const Interrupt interrupt;
+  Progress progress("computing the stimuli");
+  Laboratory laboratory(SkinSettings{}, calibrated_usx_array(), [&] {
+    if (interrupt.requested()) throw Stopped{};
+  });
+  try {
+    if (!options.fit.empty()) return fit(options, laboratory, progress);
+    const std::vector<Column> columns = predicted_columns(laboratory, experiments, chosen);
+    progress.clear();
+    print_cells(out, columns);
+    print_losses(out, columns);
+    fmt::print(out, "\nParameters: SHA-256 {}\n", frozen_hash());
+    Json document = {{"parameters_sha256", frozen_hash()}};
+    for (const Column& column : columns) document["observers"].push_back(column_json(column));
+    write_json(options.json, document);
+    if (!options.figure.empty()) draw(columns, options.figure);
+    say_written(out, options.json);
+    say_written(out, options.figure);
+  } catch (const Stopped&) {
+    progress.clear();
+    warn(fmt::format("stopped by {}; nothing was written", interrupt.cause()));
+    return interrupt.status();
+  }
+  return 0;
+}
+
+}  // namespace prostm::app
