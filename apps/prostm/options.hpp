@@ -10,6 +10,7 @@
 #include "prostm/io/field/field_file.hpp"
 #include "prostm/study/analysis/analysis.hpp"
 #include "prostm/study/analysis/model_study.hpp"
+#include "prostm/study/analysis/percepts.hpp"
 
 namespace prostm::app {
 
@@ -169,7 +170,8 @@ struct SimulateOptionsGiven {
   int hands = 6;
   int grid = 64;
   int seed = 1;
-  double noise = 1.0;  ///< factor on the observers' own noise
+  double noise = 1.0;          ///< factor on the observers' own noise
+  double sound = kStudySound;  ///< acoustic pressure at intensity 1 [Pa, rms]; not an option
 };
 
 struct ReportOptionsGiven {

@@ -42,7 +42,7 @@ double normal_cdf(double z) {
 }
 
 TEST(Percepts, TwoPointsAreDistinguishedAsByPeople) {
-  StimulusFeeler feeler(PipelineSettings{}, kPressure);
+  StimulusFeeler feeler(PipelineSettings{}, kPressure, kStudySound);
   const Percept merged = two_points(feeler, 0.015).skin, apart = two_points(feeler, 0.045).skin,
                 threshold = two_points(feeler, 0.0323).skin;
   const TemplateObserver observer(merged, apart, {kTouchNoise, kStrengthNoise});
@@ -71,7 +71,7 @@ TEST(Percepts, PositionsAreRelativeToTheHand) {
 }
 
 TEST(Percepts, NothingIsFeltWithoutPressure) {
-  StimulusFeeler feeler(PipelineSettings{}, kPressure);
+  StimulusFeeler feeler(PipelineSettings{}, kPressure, kStudySound);
   Plan silent;
   silent.foci.push_back({0, Vec2::Zero(), 0.001 * kPressure});
   for (const Plan& plan : {Plan{}, silent}) {
@@ -83,7 +83,7 @@ TEST(Percepts, NothingIsFeltWithoutPressure) {
 }
 
 TEST(Percepts, StrengthAndMapsAreProportionalToPressure) {
-  StimulusFeeler feeler(PipelineSettings{}, kPressure);
+  StimulusFeeler feeler(PipelineSettings{}, kPressure, kStudySound);
   Plan plan;
   plan.foci.push_back({0, Vec2(0.01, 0.0), 0.2 * kPressure});
   const StimulusPercept weak = feeler.feel(plan, flat_skin(), palm_up(0.0, 0.0));
@@ -102,8 +102,8 @@ TEST(Percepts, AHandFeelsTheSameInARepeatedScene) {
   const ModelHand hand = random_hand(5);
   int calls = 0;
   const auto twice = [&] { return ++calls % 2 != 0; };
-  const ScenePercepts first = feel_scene(settings, "four-plumes", hand, 4, twice),
-                      again = feel_scene(settings, "four-plumes", hand, 4, twice);
+  const ScenePercepts first = feel_scene(settings, "four-plumes", hand, kStudySound, 4, twice),
+                      again = feel_scene(settings, "four-plumes", hand, kStudySound, 4, twice);
   ASSERT_EQ(first.am.size(), 2U);  // as the callback requested
   ASSERT_EQ(first.pro_stm.size(), 2U);
   EXPECT_GT(first.am[0].strength, 0.0);

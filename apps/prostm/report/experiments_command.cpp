@@ -11,6 +11,7 @@
 #include "prostm/core/text/nearest_name.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/psychophysics/fit.hpp"
+#include "report/study_predictions.hpp"
 
 namespace prostm::app {
 namespace {
@@ -19,10 +20,8 @@ using Json = nlohmann::ordered_json;
 using Chosen = std::vector<const Experiment*>;
 using Observers = std::vector<std::pair<PerceptModel, Readout>>;
 
+constexpr int kHands = 6;           // of the simulated study
 constexpr double kMostDrawn = 1e4;  // a prediction beyond it would hide the others
-
-/// Ends the computation after a signal.
-struct Stopped {};
 
 /// Returns the value that an option names; nothing if it is not given.
 template <class E>
@@ -135,6 +134,58 @@ void print_losses(std::FILE* out, const std::vector<Column>& columns) {
   }
 }
 
+bool has_study(const Chosen& experiments) {
+  return std::ranges::any_of(experiments, [](const Experiment* one) {
+    return one->cells.front().task == ExperimentTask::OneOrFour;
+  });
+}
+
+/// Returns the paper's study with each observer, with and without its threshold.
+Json study_rows(StudyPredictions& study, const Observers& chosen) {
+  Json rows = Json::array();
+  for (const FittedObserver& of : frozen_observers()) {
+    if (std::ranges::find(chosen, std::pair(of.model, of.readout)) == chosen.end()) continue;
+    const auto strengths = study.strengths(of.model);
+    for (const bool threshold : {false, true}) {
+      Json& row = rows.emplace_back(
+          Json{{"observer", of.name()}, {"threshold", threshold}, {"quantities", Json::object()}});
+      for (const auto& [name, value] : study.of(of.observer(), threshold))
+        row["quantities"][name] = value;
+      for (std::size_t m = 0; m < strengths.size(); ++m) {
+        for (const double strength : strengths[m])
+          row["above_threshold_db"][kStudyMethods[m].name].push_back(
+              decibels(strength, of.parameters.threshold));
+      }
+    }
+  }
+  return rows;
+}
+
+void print_study(std::FILE* out, const Json& rows) {
+  fmt::print(
+      out,
+      "\nThe paper's study: right answers with AM and PRO-STM (people: 60.9 % and 75.8 %), χ²/df "
+      "of\n"
+      "participants (1.5 and 4.7), and the strength of one and four plumes above threshold\n");
+  for (const Json& row : rows) {
+    const auto percent = [&](const char* name) {
+      return 100.0 * row["quantities"][name].get<double>();
+    };
+    const auto level = [&](const char* method, std::size_t scene) {
+      return row["above_threshold_db"][method][scene].get<double>();
+    };
+    fmt::print(out,
+               "  {:<26} {:<13} AM {:4.1f} %, PRO-STM {:4.1f} %, χ²/df {:.1f}, {:.1f}, AM {:+.1f}, "
+               "{:+.1f} dB, "
+               "PRO-STM {:+.1f}, {:+.1f} dB\n",
+               row["observer"].get<std::string>(),
+               row["threshold"].get<bool>() ? "threshold" : "no threshold", percent("am"),
+               percent("pro-stm"), row["quantities"]["am spread"].get<double>(),
+               row["quantities"]["pro-stm spread"].get<double>(), level("am", 0), level("am", 1),
+               level("pro-stm", 0), level("pro-stm", 1));
+  }
+}
+
 /// The observers that the options choose.
 Observers chosen_observers(const ExperimentsOptionsGiven& options) {
   const auto model = option_value<PerceptModel>(options.model, "--model");
@@ -224,7 +275,11 @@ int experiments_command(const ExperimentsOptionsGiven& options) {
   const Interrupt interrupt;
   Progress progress("computing the stimuli");
   Laboratory laboratory(SkinSettings{}, calibrated_usx_array(), [&] {
-    if (interrupt.requested()) throw Stopped{};
+    if (interrupt.requested()) throw StudyStopped{};
+  });
+  StudyPredictions study(kHands, [&] { return !interrupt.requested(); });
+  laboratory.simulate_with([&](const Observer& observer, const std::string& quantity) {
+    return std::optional(study.of(observer, true).at(quantity));
   });
   try {
     if (!options.fit.empty()) return fit(options, laboratory, progress);
@@ -234,12 +289,16 @@ int experiments_command(const ExperimentsOptionsGiven& options) {
     print_losses(out, columns);
     fmt::print(out, "\nParameters: SHA-256 {}\n", frozen_hash());
     Json document = {{"parameters_sha256", frozen_hash()}};
+    if (has_study(experiments)) {
+      document["paper_study"] = study_rows(study, chosen);
+      print_study(out, document["paper_study"]);
+    }
     for (const Column& column : columns) document["observers"].push_back(column_json(column));
     write_json(options.json, document);
     if (!options.figure.empty()) draw(columns, options.figure);
     say_written(out, options.json);
     say_written(out, options.figure);
-  } catch (const Stopped&) {
+  } catch (const StudyStopped&) {
     progress.clear();
     warn(fmt::format("stopped by {}; nothing was written", interrupt.cause()));
     return interrupt.status();

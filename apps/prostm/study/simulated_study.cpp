@@ -96,7 +96,7 @@ std::vector<HandPercepts> feel_hands(const SimulateOptionsGiven& given,
     pool.run(2, [&](int scene) {
       const auto s = static_cast<std::size_t>(scene);
       try {
-        hand[s] = feel_scene(settings, kStudyScenes[s], of, kMoments, count);
+        hand[s] = feel_scene(settings, kStudyScenes[s], of, given.sound, kMoments, count);
       } catch (...) {
         failure[s] = std::current_exception();
       }

@@ -1,5 +1,7 @@
 #include "prostm/psychophysics/experiment.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -66,6 +68,10 @@ void read_stimuli(const JsonNode& node, const Experiment& of, Cell& cell) {
                              cell.task == ExperimentTask::Curvature;
   if (has_abscissae && (cell.abscissae.size() != cell.stimuli.size() || cell.stimuli.size() < 2))
     node.fail("must have two stimuli or more, and an abscissa for each");
+  cell.quantity = text_or_nothing(node, "quantity");
+  const bool is_study = cell.task == ExperimentTask::OneOrFour;
+  if (is_study && std::ranges::find(kStudyQuantities, cell.quantity) == kStudyQuantities.end())
+    node.fail(fmt::format("has a quantity that {}", must_be(cell.quantity, kStudyQuantities)));
   cell.presented = text_or_nothing(node, "presented");
   cell.answer = text_or_nothing(node, "answer");
   for (const std::string& name : {cell.presented, cell.answer}) {
@@ -90,8 +96,9 @@ void read_gap(const JsonNode& node, Cell& cell) {
 }
 
 Cell cell_from_json(const JsonNode& node, const Experiment& of) {
-  node.allow_only({"name", "task", "stimuli", "abscissae", "presented", "answer", "share",
-                   "frequencies_hz", "gap_mm", "value", "low", "high", "trials", "source"});
+  node.allow_only({"name", "task", "stimuli", "abscissae", "quantity", "presented", "answer",
+                   "share", "frequencies_hz", "gap_mm", "value", "low", "high", "trials",
+                   "source"});
   Cell cell;
   cell.name = node.at("name", "a text").text();
   cell.task = name_from<ExperimentTask>(node.at("task", "the name of a task"));

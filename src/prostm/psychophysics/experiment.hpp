@@ -29,12 +29,20 @@ enum class ExperimentTask : std::uint8_t {
   Identify,        ///< share of an answer for a stimulus, or of right answers for all
   Direction,       ///< share of right answers on the direction of a sweep
   Curvature,       ///< Weber fraction of an arc's curvature
+  OneOrFour,       ///< a quantity of the paper's study, which the caller of Laboratory simulates
 };
 template <>
-inline constexpr std::array<std::string_view, 13> kNames<ExperimentTask> = {
-    "force-threshold", "threshold-ratio", "stronger", "strength-ratio", "strongest-speed",
-    "strength-linear", "two-points",      "gap",      "gap-ratio",      "locate",
-    "identify",        "direction",       "curvature"};
+inline constexpr std::array<std::string_view, 14> kNames<ExperimentTask> = {
+    "force-threshold", "threshold-ratio", "stronger",  "strength-ratio", "strongest-speed",
+    "strength-linear", "two-points",      "gap",       "gap-ratio",      "locate",
+    "identify",        "direction",       "curvature", "one-or-four"};
+
+/// Quantities of the paper's study: shares of right answers with a method in a scene and in both;
+/// χ²/df of participants; the difference of shares, PRO-STM minus AM.
+inline constexpr std::array<std::string_view, 9> kStudyQuantities = {
+    "am one-plume",      "am four-plumes",      "am",
+    "pro-stm one-plume", "pro-stm four-plumes", "pro-stm",
+    "am spread",         "pro-stm spread",      "difference"};
 
 /// How a published number is known.
 enum class Source : std::uint8_t {
@@ -57,6 +65,7 @@ struct Cell {
   std::vector<std::string> stimuli;  ///< names of the experiment's stimuli
   std::vector<double> abscissae;     ///< of the stimuli, for the tasks that have one
   std::string presented, answer;  ///< Identify: a stimulus, and the one named; empty: right answers
+  std::string quantity;           ///< OneOrFour: one of kStudyQuantities
   double share = 0.0;             ///< Gap, GapRatio: share of answers "two"
   std::vector<double> frequencies;  ///< TwoPoints, Gap, GapRatio: of the modulation [Hz]
   double gap = 0.0;                 ///< TwoPoints [m]

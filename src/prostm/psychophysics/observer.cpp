@@ -66,6 +66,29 @@ double dip_between(const FeltStimulus& felt, const Vec2& a, const Vec2& b) {
   return 1.0 - lowest / ends;
 }
 
+double deepest_dip(const FeltStimulus& felt) {
+  const SkinPatch& patch = felt.patch;
+  const Vec2 middle = centroid(patch, felt.map);
+  std::array<double, 4> largest{};
+  std::array<Vec2, 4> place;
+  place.fill(middle);
+  for (int j = 0; j < patch.rows; ++j) {
+    for (int i = 0; i < patch.cols; ++i) {
+      const Vec2 x = patch.cell * Vec2(i - 0.5 * (patch.cols - 1), j - 0.5 * (patch.rows - 1));
+      const bool right = x.x() >= middle.x(), up = x.y() >= middle.y();
+      const std::size_t quadrant = up ? (right ? 0 : 1) : (right ? 3 : 2);
+      const double value = felt.map[static_cast<std::size_t>(j * patch.cols + i)];
+      if (value <= largest[quadrant]) continue;
+      largest[quadrant] = value;
+      place[quadrant] = x;
+    }
+  }
+  double deepest = 0.0;
+  for (std::size_t q = 0; q < place.size(); ++q)
+    deepest = std::max(deepest, dip_between(felt, place[q], place[(q + 1) % place.size()]));
+  return deepest;
+}
+
 /// Standard deviation of the noise in each place: over the largest value, and not below that of a
 /// stimulus at threshold.
 double Observer::local_noise(const FeltStimulus& felt) const {

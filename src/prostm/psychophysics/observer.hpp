@@ -85,4 +85,8 @@ double decibels(double strength, double reference);
 /// value between them over the lower of both.
 double dip_between(const FeltStimulus& felt, const Vec2& a, const Vec2& b);
 
+/// Returns the deepest dip between the strongest places of neighbouring quadrants about a map's
+/// centroid: near 0 for one lump, near 1 for four. 0 for a map of zeros.
+double deepest_dip(const FeltStimulus& felt);
+
 }  // namespace prostm

@@ -43,7 +43,10 @@ double correlation(const std::vector<double>& x, const std::vector<double>& y) {
   return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
 }
 
-bool is_share(ExperimentTask task) {
+/// Whether a guess is a share of answers.
+bool is_share(const Cell& cell) {
+  const ExperimentTask task = cell.task;
+  if (task == ExperimentTask::OneOrFour) return cell.trials > 0;
   return task == ExperimentTask::Stronger || task == ExperimentTask::TwoPoints ||
          task == ExperimentTask::Identify || task == ExperimentTask::Direction;
 }
@@ -194,12 +197,14 @@ std::optional<double> Laboratory::predict(const Observer& observer, const Experi
       return observer.tells_direction(felt(observer, of, cell.stimuli[0]));
     case ExperimentTask::Curvature:
       return weber(observer, of, cell);
+    case ExperimentTask::OneOrFour:
+      return study_ ? study_(observer, cell.quantity) : std::nullopt;
   }
   return std::nullopt;
 }
 
 double loss_of_guess(const Cell& cell) {
-  if (!is_share(cell.task)) return cell.value ? kMissedBound : 0.5 * kMissedBound;
+  if (!is_share(cell)) return cell.value ? kMissedBound : 0.5 * kMissedBound;
   const bool identifies = cell.task == ExperimentTask::Identify;
   return loss_of(cell, identifies ? 1.0 / static_cast<double>(cell.stimuli.size()) : 0.5);
 }

@@ -20,6 +20,11 @@ class Laboratory {
   Laboratory(const SkinSettings& skin, const TransducerArray& array, std::function<void()> step)
       : feeler_(skin, array, std::move(step)) {}
 
+  /// Predicts a quantity of the paper's study, one of kStudyQuantities.
+  using Study = std::function<std::optional<double>(const Observer&, const std::string& quantity)>;
+  /// Sets the simulation of the paper's study; without it, that study is guessed.
+  void simulate_with(Study study) { study_ = std::move(study); }
+
   /// Returns the predicted number of a cell in its unit; nothing where the observer has no answer.
   std::optional<double> predict(const Observer& observer, const Experiment& of, const Cell& cell);
 
@@ -42,6 +47,7 @@ class Laboratory {
   std::optional<double> weber(const Observer& observer, const Experiment& of, const Cell& cell);
 
   Feeler feeler_;
+  Study study_;
 };
 
 /// One cell as predicted. Without an observer, or without its answer, it is guessed.

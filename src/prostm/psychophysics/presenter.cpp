@@ -62,7 +62,7 @@ std::vector<Stay> stays_of(const SlowPath& course) {
 }
 
 /// Sums of P_n = (2/K) Σ_k p(kT/K) e^{−2πi nk/K}, (S9), and the mean and the largest pressure.
-void fold(const std::vector<double>& pressure, int samples, Vibration& out) {
+void fold(std::span<const double> pressure, int samples, Vibration& out) {
   const std::size_t cells = out.patch.size();
   out.mean.assign(cells, 0.0);
   out.largest.assign(cells, 0.0);
@@ -88,6 +88,20 @@ int samples_for(double period) {
 }
 
 }  // namespace
+
+Vibration vibration_of(const SkinMotion& motion, double period, int samples,
+                       std::span<const double> pressure) {
+  Vibration out;
+  out.patch = motion.patch();
+  out.period = period;
+  out.harmonics = motion.harmonics();
+  for (int n = 1; n <= out.harmonics; ++n) {
+    const auto w = motion.displacement(n);
+    out.displacement.insert(out.displacement.end(), w.begin(), w.end());
+  }
+  fold(pressure, samples, out);
+  return out;
+}
 
 TransducerArray calibrated_usx_array(double level) {
   TransducerArray array = usx_array();
@@ -123,16 +137,7 @@ void Presenter::vibrate(const Palm& palm, double period, int samples,
     response->prepare(period, samples, kHighest);
   }
   response->respond({period, samples, pressure});
-  vibration_.patch = palm.patch;
-  vibration_.period = period;
-  vibration_.harmonics = response->harmonics();
-  vibration_.displacement.clear();
-  for (int n = 1; n <= response->harmonics(); ++n) {
-    const auto w = response->displacement(n);
-    vibration_.displacement.insert(vibration_.displacement.end(), w.begin(), w.end());
-  }
-  fold(pressure, samples, vibration_);
-  on_moment(vibration_, duration);
+  on_moment(vibration_of(*response, period, samples, pressure), duration);
 }
 
 void Presenter::present_am(const AmPoints& am, double height, double duration,

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -31,6 +32,11 @@ struct Vibration {
 
   double frequency(int n) const { return n / period; }
 };
+
+/// Returns the vibration of a computed response. @param pressure samples × cells, which it responds
+/// to [Pa].
+Vibration vibration_of(const SkinMotion& motion, double period, int samples,
+                       std::span<const double> pressure);
 
 /// One moment of a stimulus: a vibration, for a time.
 using OnMoment = std::function<void(const Vibration& vibration, double duration)>;
@@ -60,7 +66,6 @@ class Presenter {
   TransducerArray array_;
   std::map<std::tuple<int, int, double>, std::unique_ptr<experiments::StmField>> fields_;
   std::map<std::tuple<double, int, int>, std::unique_ptr<SkinResponse>> responses_;
-  Vibration vibration_;
 };
 
 }  // namespace prostm

@@ -78,6 +78,15 @@ FeltField felt_field(const TargetField& raster, const SkinMotion& motion) {
   return out;
 }
 
+std::vector<double> raster_pressure(const PackedArray& packed, const Medium& medium,
+                                    const TargetField& raster, const LoopSamples& loop,
+                                    const LoopDriveResult& drives, WorkerPool& pool) {
+  const SkinSurface skin = skin_surface(raster);
+  return on_raster(raster, skin,
+                   loop_pressure(packed, medium, LoopBasis(packed, drives.output, pool),
+                                 skin.points, felt_parts(loop), pool));
+}
+
 FeelingSkin::FeelingSkin(const TargetField& raster)
     : response_(SkinModel(SkinSettings()), {raster.rows, raster.cols, raster.cell}) {}
 
@@ -91,11 +100,8 @@ FeltField FeelingSkin::feel(const TargetField& raster, double period, int parts,
 FeltField FeelingSkin::feel(const PackedArray& packed, const Medium& medium,
                             const TargetField& raster, const LoopSamples& loop,
                             const LoopDriveResult& drives, WorkerPool& pool) {
-  const SkinSurface skin = skin_surface(raster);
-  const int parts = felt_parts(loop);
-  const LoopPressure pressure = loop_pressure(
-      packed, medium, LoopBasis(packed, drives.output, pool), skin.points, parts, pool);
-  return feel(raster, loop.samples / loop.sample_rate, parts, on_raster(raster, skin, pressure));
+  return feel(raster, loop.samples / loop.sample_rate, felt_parts(loop),
+              raster_pressure(packed, medium, raster, loop, drives, pool));
 }
 
 FeelingBoundedSkin::FeelingBoundedSkin(const TargetField& raster, const SkinSettings& settings)

@@ -32,6 +32,13 @@ struct FeltField {
 /// Returns the percept of a computed response. @pre the patch is that of the raster
 FeltField felt_field(const TargetField& raster, const SkinMotion& motion);
 
+/// Computes the pressure of the loop that an array plays on the whole raster, felt_parts(loop) ×
+/// rows·cols; 0 off the skin [Pa]. @throws as LoopBasis and loop_pressure() do. @pre
+/// is_felt(raster, loop)
+std::vector<double> raster_pressure(const PackedArray& packed, const Medium& medium,
+                                    const TargetField& raster, const LoopSamples& loop,
+                                    const LoopDriveResult& drives, WorkerPool& pool);
+
 /// Skin on the raster of a target, with the nominal parameters of (S1) to (S5).
 class FeelingSkin {
  public:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -14,6 +15,8 @@
 
 namespace prostm {
 namespace {
+
+constexpr int kThresholds = 15;  // participants of one hand, at equally likely thresholds
 
 /// Right and wrong answers of one participant in each scene.
 using Score = std::array<Proportion, 2>;
@@ -60,6 +63,53 @@ Percept mean_of(std::span<const Percept> all) {
   return out;
 }
 
+/// Means of the training moments, and the moments of trials.
+struct SplitScenes {
+  std::array<Percept, 2> known;
+  FeltScenes trials;
+};
+
+SplitScenes split(const FeltScenes& felt) {
+  SplitScenes out;
+  for (std::size_t s = 0; s < felt.size(); ++s) {
+    if (felt[s].size() < 2 * kTrialMoments)
+      throw std::invalid_argument(fmt::format("{} moments of {} must be at least {}",
+                                              felt[s].size(), kStudyScenes[s], 2 * kTrialMoments));
+    std::vector<Percept> training;
+    for (std::size_t i = 0; i < felt[s].size(); ++i)
+      (i % 2 == 0 ? training : out.trials[s]).push_back(felt[s][i]);
+    out.known[s] = mean_of(training);
+  }
+  return out;
+}
+
+/// Adds the probability of a right answer in each trial. @param evidence returns the evidence for
+/// the second scene, in standard deviations.
+template <class Evidence>
+void add_trials(const SplitScenes& scenes, double lapse, ModelParticipant& out,
+                const Evidence& evidence) {
+  for (std::size_t s = 0; s < scenes.trials.size(); ++s) {
+    for (std::size_t i = 0; i + kTrialMoments <= scenes.trials[s].size(); ++i) {
+      const double for_second =
+          evidence(mean_of(std::span(scenes.trials[s]).subspan(i, kTrialMoments)));
+      out.right[s].push_back(chance_of_right(s == 1 ? for_second : -for_second, lapse));
+    }
+  }
+}
+
+/// Simulates an observer of one number with noise of this standard deviation.
+ModelParticipant observe_number(const FeltScenes& felt, double noise, double lapse) {
+  const SplitScenes scenes = split(felt);
+  const double first = scenes.known[0].front(), second = scenes.known[1].front();
+  ModelParticipant out;
+  out.d_prime = std::abs(second - first) / noise;
+  add_trials(scenes, lapse, out, [&](const Percept& trial) {
+    const double over = (trial.front() - 0.5 * (first + second)) / noise;
+    return second >= first ? over : -over;
+  });
+  return out;
+}
+
 }  // namespace
 
 double ModelParticipant::mean_right(std::size_t scene) const {
@@ -68,26 +118,39 @@ double ModelParticipant::mean_right(std::size_t scene) const {
 }
 
 ModelParticipant observe(const FeltScenes& felt, const ObserverNoise& noise, double lapse) {
-  std::array<Percept, 2> known;
-  FeltScenes trials;
-  for (std::size_t s = 0; s < felt.size(); ++s) {
-    if (felt[s].size() < 2 * kTrialMoments)
-      throw std::invalid_argument(fmt::format("{} moments of {} must be at least {}",
-                                              felt[s].size(), kStudyScenes[s], 2 * kTrialMoments));
-    std::vector<Percept> training;
-    for (std::size_t i = 0; i < felt[s].size(); ++i)
-      (i % 2 == 0 ? training : trials[s]).push_back(felt[s][i]);
-    known[s] = mean_of(training);
-  }
-  const TemplateObserver observer(known[0], known[1], noise);
+  const SplitScenes scenes = split(felt);
+  const TemplateObserver observer(scenes.known[0], scenes.known[1], noise);
   ModelParticipant out;
   out.d_prime = observer.d_prime();
+  add_trials(scenes, lapse, out, [&](const Percept& trial) { return observer.evidence(trial); });
+  return out;
+}
+
+std::vector<ModelParticipant> observe_as(const Observer& observer,
+                                         const std::array<std::vector<ModelPercept>, 2>& felt,
+                                         bool threshold, double lapse) {
+  FeltScenes numbers;
+  double strength = 0.0;
   for (std::size_t s = 0; s < felt.size(); ++s) {
-    for (std::size_t i = 0; i + kTrialMoments <= trials[s].size(); ++i) {
-      const Percept trial = mean_of(std::span(trials[s]).subspan(i, kTrialMoments));
-      const double for_second = observer.evidence(trial);
-      out.right[s].push_back(chance_of_right(s == 1 ? for_second : -for_second, lapse));
+    for (const ModelPercept& moment : felt[s]) {
+      numbers[s].push_back(observer.readout() == Readout::Template ? moment.places
+                                                                   : Percept{moment.dip});
+      strength += moment.strength / static_cast<double>(2 * felt[s].size());
     }
+  }
+  std::vector<ModelParticipant> out;
+  for (int i = 0; i < kThresholds; ++i) {
+    const double quantile = (i + 0.5) / kThresholds;
+    const double z = boost::math::quantile(boost::math::normal(), quantile);
+    const double own =
+        threshold ? observer.parameters().threshold * std::pow(10.0, kThresholdSpread * z / 20.0)
+                  : 0.0;
+    const double weak = strength > 0.0 ? own / strength : 0.0;
+    const double noise = observer.parameters().noise * std::hypot(1.0, weak);
+    out.push_back(observer.readout() == Readout::Template
+                      ? observe(numbers, {noise, kCommonNoise}, lapse)
+                      : observe_number(numbers, noise, lapse));
+    if (!threshold) break;
   }
   return out;
 }

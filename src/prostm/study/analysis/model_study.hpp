@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "prostm/core/random.hpp"
+#include "prostm/psychophysics/observer.hpp"
 #include "prostm/study/analysis/observer.hpp"
+#include "prostm/study/analysis/percepts.hpp"
 #include "prostm/study/analysis/scores.hpp"
 #include "prostm/study/task/statistics.hpp"
 
@@ -36,6 +38,14 @@ inline constexpr std::size_t kTrialMoments = 3;
 /// moments alternate, so that slow drifts affect both equally.
 /// @throws std::invalid_argument: fewer than 2 kTrialMoments moments; or as TemplateObserver.
 ModelParticipant observe(const FeltScenes& felt, const ObserverNoise& noise, double lapse);
+
+/// The same for percepts of any model: for each hand, participants of several thresholds, which
+/// spread by kThresholdSpread about the observer's. A template observer has its places as above; a
+/// category observer the deepest dip, and its training's middle as the criterion.
+/// @param felt moments of both scenes. @param threshold false: participants without a threshold.
+std::vector<ModelParticipant> observe_as(const Observer& observer,
+                                         const std::array<std::vector<ModelPercept>, 2>& felt,
+                                         bool threshold, double lapse);
 
 struct StudyShape {
   int participants = 8;  ///< participants with each method

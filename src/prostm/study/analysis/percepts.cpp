@@ -10,6 +10,7 @@
 #include "prostm/pipeline/world_kinds.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/plan/quasi_static/quasi_static.hpp"
+#include "prostm/psychophysics/observer.hpp"
 #include "prostm/score/felt.hpp"
 #include "prostm/score/felt_skill.hpp"
 
@@ -18,9 +19,8 @@ namespace {
 
 // places of the hand about its palm joint, in steps of kTouchResolution: 120 mm wide, 187 mm long
 constexpr int kSideways = 7, kTowardsWrist = 8, kTowardsTips = 14;
-constexpr double kFullScalePa = 450.0;  // acoustic pressure of a focal point at intensity 1 [rms]
-constexpr double kSettle = 4.0;         // [s]
-constexpr double kApart = 0.3;          // time between moments [s]
+constexpr double kSettle = 4.0;  // [s]
+constexpr double kApart = 0.3;   // time between moments [s]
 
 /// A study hand with a rigid tremor: along each axis, two sines of random frequency and phase.
 class TremblingHand final : public HandSource {
@@ -69,6 +69,22 @@ std::size_t places() {
   return static_cast<std::size_t>((2 * kSideways + 1) * (kTowardsWrist + kTowardsTips + 1));
 }
 
+/// Places of at_places() as a map of its own.
+constexpr SkinPatch kPlaces{kTowardsWrist + kTowardsTips + 1, 2 * kSideways + 1, kTouchResolution};
+
+ModelPercept model_percept(PerceptModel model, const Vibration& vibration,
+                           const TargetField& raster, const Pose& X_DH) {
+  const PerceptEnergy energy = percept_energy(model, vibration);
+  ModelPercept out;
+  out.places = at_places(raster, strength_map(model, energy), X_DH);
+  out.strength = strength_of(model, vibration.patch, energy);
+  FeltStimulus felt;
+  felt.patch = kPlaces;
+  felt.map = out.places;
+  out.dip = deepest_dip(felt);
+  return out;
+}
+
 bool is_silent(const LoopSamples& loop) {
   return std::ranges::all_of(loop.sample,
                              [](const FocusSample& sample) { return sample.intensity == 0.0F; });
@@ -95,9 +111,10 @@ Percept at_places(const TargetField& raster, std::span<const double> map, const 
   return out;
 }
 
-StimulusFeeler::StimulusFeeler(const PipelineSettings& settings, double full_scale)
+StimulusFeeler::StimulusFeeler(const PipelineSettings& settings, double full_scale, double sound)
     : settings_(settings),
       emit_(emit_settings(settings, full_scale)),
+      sound_(sound),
       packed_(settings.transducers, air_),
       pool_(settings.threads) {}
 
@@ -112,13 +129,20 @@ StimulusPercept StimulusFeeler::feel(const Plan& plan, const TargetFrame& target
   out.field = at_places(raster, field, X_DH);
   const LoopSamples loop = plan_loop(plan, target, emit_, settings_.emission_rate());
   if (is_silent(loop)) return out;
-  const LoopDriveSettings drive{.focus = {}, .transducer = {}, .full_scale_pa = kFullScalePa};
+  const LoopDriveSettings drive{.focus = {}, .transducer = {}, .full_scale_pa = sound_};
   const auto go_on = [](int, int) { return true; };
   LoopDriveResult drives;
   loop_drives(settings_.transducers, air_, loop, drive, go_on, drives);
-  const FeltField felt = FeelingSkin(raster).feel(packed_, air_, raster, loop, drives, pool_);
+  const std::vector<double> pressure = raster_pressure(packed_, air_, raster, loop, drives, pool_);
+  const double period = loop.samples / loop.sample_rate;
+  const int parts = felt_parts(loop);
+  FeelingSkin skin(raster);
+  const FeltField felt = skin.feel(raster, period, parts, pressure);
   out.skin = at_places(raster, felt.percept, X_DH);
   out.strength = felt.intensity;
+  const Vibration vibration = vibration_of(skin.motion(), period, parts, pressure);
+  for (std::size_t m = 0; m < kPerceptModels; ++m)
+    out.by_model[m] = model_percept(static_cast<PerceptModel>(m), vibration, raster, X_DH);
   return out;
 }
 
@@ -132,13 +156,13 @@ ModelHand random_hand(std::uint64_t seed) {
 }
 
 ScenePercepts feel_scene(PipelineSettings settings, const std::string& scene, const ModelHand& hand,
-                         int moments, const std::function<bool()>& progress) {
+                         double sound, int moments, const std::function<bool()>& progress) {
   settings.scene = scene;
   settings.study_hand.size = hand.size;
   settings.jets.place = JetPlace::Hand;
   const double full_scale = scene_named(scene, world_named(settings.world)).full_scale_pressure;
   WorldStage world(settings, std::make_unique<TremblingHand>(settings.study_hand, hand));
-  StimulusFeeler feeler(settings, full_scale);
+  StimulusFeeler feeler(settings, full_scale, sound);
   settings.emit.full_scale_pressure = emit_settings(settings, full_scale).full_scale_pressure;
   Planner planner(plan_settings(settings, settings.emission_rate()), world.max_cells());
   AmPlanner am(am_settings(settings, settings.emission_rate()), world.max_cells());

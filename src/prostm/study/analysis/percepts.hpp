@@ -2,6 +2,7 @@
 /// Percepts of scenes rendered by a method on a participant's hand, for the model observers of
 /// docs/design/study.md (Y2) to (Y6).
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -13,11 +14,14 @@
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/pipeline/settings.hpp"
 #include "prostm/plan/plan.hpp"
+#include "prostm/psychophysics/percept_model.hpp"
 #include "prostm/study/analysis/observer.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm {
 
+/// Acoustic pressure of a focal point at intensity 1 in the simulated study [Pa, rms].
+inline constexpr double kStudySound = 450.0;
 /// Standard deviation of the Gaussian that models the skin's spatial resolution [m]: the
 /// localisation error for AM focal points on the palm [Y-4].
 inline constexpr double kTouchResolution = 8.5e-3;
@@ -29,11 +33,19 @@ inline constexpr double kStrengthNoise = 0.2;
 /// Share of trials in which an observer guesses [Y-3].
 inline constexpr double kObserverLapse = 0.03;
 
+/// A moment of a stimulus as one percept model feels it.
+struct ModelPercept {
+  Percept places;         ///< strength at places of the hand [m, or Pa]
+  double strength = 0.0;  ///< (X7) [m, or Pa]
+  double dip = 0.0;       ///< deepest_dip() of the places
+};
+
 /// The percept of one moment of a stimulus.
 struct StimulusPercept {
   Percept skin;           ///< √e of (S7) at places of the hand [m]
   Percept field;          ///< pressure of Eq. (1) at the same places [Pa]
   double strength = 0.0;  ///< √E of (S8) [m]
+  std::array<ModelPercept, kPerceptModels> by_model = {};
 };
 
 /// Samples a map of a raster at places of the hand: a grid of spacing kTouchResolution over palm
@@ -44,8 +56,9 @@ Percept at_places(const TargetField& raster, std::span<const double> map, const 
 /// Computes percepts of plans played on the array of the settings.
 class StimulusFeeler {
  public:
-  /// @param full_scale full scale of the scene, as for emit_settings() [Pa].
-  StimulusFeeler(const PipelineSettings& settings, double full_scale);
+  /// @param full_scale full scale of the scene, as for emit_settings() [Pa]. @param sound acoustic
+  /// pressure of a focal point at intensity 1 [Pa, rms].
+  StimulusFeeler(const PipelineSettings& settings, double full_scale, double sound);
 
   /// @param X_DH as for at_places(). All zeros for a plan without pressure.
   StimulusPercept feel(const Plan& plan, const TargetFrame& target, const Pose& X_DH);
@@ -53,6 +66,7 @@ class StimulusFeeler {
  private:
   PipelineSettings settings_;
   EmitSettings emit_;
+  double sound_;
   Medium air_;
   PackedArray packed_;
   WorkerPool pool_;
@@ -73,8 +87,10 @@ struct ScenePercepts {
 };
 /// Simulates a scene on a hand, not in real time, until it has settled, and then computes percepts
 /// of `moments` moments with both methods. @param settings scene, hand and position of the jets are
-/// replaced. @param progress called after each moment; returns false to stop.
+/// replaced.
+/// @param sound acoustic pressure of a focal point at intensity 1 [Pa, rms]. @param progress called
+/// after each moment; returns false to stop.
 ScenePercepts feel_scene(PipelineSettings settings, const std::string& scene, const ModelHand& hand,
-                         int moments, const std::function<bool()>& progress);
+                         double sound, int moments, const std::function<bool()>& progress);
 
 }  // namespace prostm

@@ -1,0 +1,109 @@
+#include "report/study_predictions.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "prostm/psychophysics/presenter.hpp"
+
+namespace prostm::app {
+namespace {
+
+/// χ²/df of participants of a simulated study, the mean of many.
+double spread_of(const std::vector<ModelParticipant>& pool, const SimulateOptionsGiven& given) {
+  constexpr int kStudies = 200;
+  Random random(static_cast<std::uint64_t>(given.seed));
+  double sum = 0.0;
+  for (int study = 0; study < kStudies; ++study) {
+    std::map<std::string, Proportion> people;
+    for (const Answer& answer : simulate_study(pool, given.shape, "", random)) {
+      Proportion& of = people[answer.participant];
+      ++of.trials;
+      of.successes += answer.correct ? 1 : 0;
+    }
+    std::vector<Proportion> all;
+    for (const auto& [name, proportion] : people) all.push_back(proportion);
+    const auto test = dispersion(all);
+    if (test) sum += test->statistic / test->df / kStudies;
+  }
+  return sum;
+}
+
+}  // namespace
+
+StudyPredictions::StudyPredictions(int hands, std::function<bool()> go_on)
+    : go_on_(std::move(go_on)) {
+  given_.hands = hands;
+  // the focus at full drive is intensity 1
+  given_.sound = 20e-6 * std::pow(10.0, kMeasuredLevel / 20.0);
+}
+
+void StudyPredictions::feel() {
+  if (!hands_.empty()) return;
+  PipelineSettings settings;
+  settings.plan.preset = Preset::Paper;
+  settings.fluid.cells = given_.grid;
+  settings.threads = 1;
+  settings.transducers = calibrated_usx_array();
+  hands_ = feel_hands(given_, settings, [&](int, int) { return go_on_(); });
+  if (!go_on_()) throw StudyStopped{};
+}
+
+std::vector<ModelParticipant> StudyPredictions::pool(const Observer& observer, std::size_t method,
+                                                     bool threshold) {
+  std::vector<ModelParticipant> out;
+  for (const HandPercepts& hand : hands_) {
+    std::array<std::vector<ModelPercept>, 2> felt;
+    for (std::size_t s = 0; s < felt.size(); ++s) {
+      for (const StimulusPercept& moment : hand[s].*kStudyMethods[method].percepts)
+        felt[s].push_back(moment.by_model[static_cast<std::size_t>(observer.model())]);
+    }
+    for (ModelParticipant& who : observe_as(observer, felt, threshold, kObserverLapse))
+      out.push_back(std::move(who));
+  }
+  return out;
+}
+
+const StudyQuantities& StudyPredictions::of(const Observer& observer, bool threshold) {
+  const std::string key =
+      fmt::format("{} {} {}", name_of(observer.model()), name_of(observer.readout()), threshold);
+  const auto found = known_.find(key);
+  if (found != known_.end()) return found->second;
+  feel();
+  StudyQuantities out;
+  for (std::size_t m = 0; m < kStudyMethods.size(); ++m) {
+    const std::string method = kStudyMethods[m].name;
+    const std::vector<ModelParticipant> people = pool(observer, m, threshold);
+    std::array<double, 2> right{};
+    for (std::size_t s = 0; s < right.size(); ++s) {
+      for (const ModelParticipant& who : people)
+        right[s] += who.mean_right(s) / static_cast<double>(people.size());
+      out[fmt::format("{} {}", method, kStudyScenes[s])] = right[s];
+    }
+    out[method] = 0.5 * (right[0] + right[1]);
+    out[method + " spread"] = spread_of(people, given_);
+  }
+  out["difference"] = out["pro-stm"] - out["am"];
+  return known_.emplace(key, std::move(out)).first->second;
+}
+
+std::array<std::array<double, 2>, 2> StudyPredictions::strengths(PerceptModel model) {
+  feel();
+  std::array<std::array<double, 2>, 2> out{};
+  for (std::size_t m = 0; m < kStudyMethods.size(); ++m) {
+    for (std::size_t s = 0; s < out[m].size(); ++s) {
+      double moments = 0.0;
+      for (const HandPercepts& hand : hands_) {
+        for (const StimulusPercept& moment : hand[s].*kStudyMethods[m].percepts) {
+          out[m][s] += moment.by_model[static_cast<std::size_t>(model)].strength;
+          ++moments;
+        }
+      }
+      out[m][s] /= moments;
+    }
+  }
+  return out;
+}
+
+}  // namespace prostm::app

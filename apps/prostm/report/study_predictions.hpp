@@ -1,0 +1,44 @@
+#pragma once
+/// The paper's study with the observers of the psychophysics.
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "prostm/psychophysics/observer.hpp"
+#include "study/simulated_study.hpp"
+
+namespace prostm::app {
+
+/// Ends a simulation that was asked to stop.
+struct StudyStopped {};
+
+/// Quantities of the paper's study by name, as in kStudyQuantities.
+using StudyQuantities = std::map<std::string, double>;
+
+/// Simulates the paper's study: its scenes with both methods on simulated hands, with the
+/// calibrated array at full drive.
+class StudyPredictions {
+ public:
+  /// @param hands number of simulated hands. @param go_on called repeatedly; returns false to stop.
+  StudyPredictions(int hands, std::function<bool()> go_on);
+
+  /// Returns all quantities for an observer. The first call computes the percepts, which takes a
+  /// minute. @param threshold false: participants without a threshold.
+  const StudyQuantities& of(const Observer& observer, bool threshold);
+  /// Mean strength with each method in each scene, (X7), over all hands [m, or Pa].
+  std::array<std::array<double, 2>, 2> strengths(PerceptModel model);
+
+ private:
+  std::vector<ModelParticipant> pool(const Observer& observer, std::size_t method, bool threshold);
+  void feel();
+
+  SimulateOptionsGiven given_;
+  std::function<bool()> go_on_;
+  std::vector<HandPercepts> hands_;
+  std::map<std::string, StudyQuantities> known_;
+};
+
+}  // namespace prostm::app
