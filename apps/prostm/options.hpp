@@ -188,6 +188,7 @@ struct ExperimentsOptionsGiven {
   std::string set;                 ///< fit or held-out; empty: both
   std::string model, readout;      ///< empty: all
   std::string fit;                 ///< file for the fitted parameters; empty: predict
+  bool leave_one_out = false;      ///< fit without each paper in turn
   std::string json, figure;
 };
 

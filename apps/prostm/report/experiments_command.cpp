@@ -249,10 +249,53 @@ std::vector<Column> predicted_columns(Laboratory& laboratory, const Chosen& expe
   return columns;
 }
 
-int fit(const ExperimentsOptionsGiven& options, Laboratory& laboratory, Progress& progress) {
-  Chosen experiments;
+/// Returns the experiments of the fitted set, without those of a paper if it is named.
+Chosen fitted_experiments(const std::string& without) {
+  Chosen out;
   for (const Experiment& one : published_experiments())
-    if (one.set == ExperimentSet::Fit) experiments.push_back(&one);
+    if (one.set == ExperimentSet::Fit && one.paper_id != without) out.push_back(&one);
+  return out;
+}
+
+/// Fits each observer without each paper of the fitted set, and prints the parameters that are
+/// outside their ranges then, or that nothing determines any more.
+int leave_one_out(const ExperimentsOptionsGiven& options, Laboratory& laboratory,
+                  Progress& progress) {
+  std::FILE* out = prose(options.json);
+  Json rows = Json::array();
+  const Observers chosen = chosen_observers(options);
+  std::vector<std::string> papers;
+  for (const Experiment* one : fitted_experiments("")) papers.push_back(one->paper_id);
+  for (const FittedObserver& frozen : frozen_observers()) {
+    if (std::ranges::find(chosen, std::pair(frozen.model, frozen.readout)) == chosen.end())
+      continue;
+    for (const std::string& paper : papers) {
+      const FittedObserver of =
+          fit_observer(laboratory, frozen.model, frozen.readout, fitted_experiments(paper));
+      progress.clear();
+      fmt::print(out, "{} without {}:", frozen.name(), paper);
+      Json& row = rows.emplace_back(Json{{"observer", frozen.name()}, {"without", paper}});
+      for (std::size_t i = 0; i < kFittedParameters; ++i) {
+        const FittedParameter& parameter = fitted_parameters()[i];
+        const double value = of.parameters.*parameter.value;
+        const ParameterRange& range = frozen.ranges[i];
+        if (!has(parameter, frozen.readout)) continue;
+        row[parameter.name] = {{"value", value}, {"determined", of.ranges[i].determined}};
+        const bool moved = value < range.low || value > range.high;
+        if (!of.ranges[i].determined)
+          fmt::print(out, " {} is not determined;", parameter.name);
+        else if (moved)
+          fmt::print(out, " {} moves to {:.3g};", parameter.name, value);
+      }
+      fmt::print(out, " loss {:.2f}\n", of.loss);
+    }
+  }
+  write_json(options.json, Json{{"leave_one_out", rows}});
+  return 0;
+}
+
+int fit(const ExperimentsOptionsGiven& options, Laboratory& laboratory, Progress& progress) {
+  const Chosen experiments = fitted_experiments("");
   std::vector<FittedObserver> fitted;
   for (const auto& [model, readout] : chosen_observers(options)) {
     fitted.push_back(fit_observer(laboratory, model, readout, experiments));
@@ -283,6 +326,7 @@ int experiments_command(const ExperimentsOptionsGiven& options) {
   });
   try {
     if (!options.fit.empty()) return fit(options, laboratory, progress);
+    if (options.leave_one_out) return leave_one_out(options, laboratory, progress);
     const std::vector<Column> columns = predicted_columns(laboratory, experiments, chosen);
     progress.clear();
     print_cells(out, columns);

@@ -33,7 +33,8 @@ void add_report(Command app, Work& work) {
 
 void add_experiments(Command app, Work& work) {
   auto command = app.add_command(
-      "experiments", "published experiments with people, and what models of touch predict for them");
+      "experiments",
+      "published experiments with people, and what models of touch predict for them");
   auto o = std::make_shared<ExperimentsOptionsGiven>();
   command.add_option("names", o->names, "experiments by name; default: all").type_name("NAME");
   add_name(command, "--set", o->set, "only the experiments of this set: fit or held-out");
@@ -41,6 +42,8 @@ void add_experiments(Command app, Work& work) {
   add_name(command, "--readout", o->readout, "only this readout: template or category");
   add_output(command, o->files, "--fit", o->fit, check_json_output,
              "fit the observers to the experiments of the set fit, and write their parameters");
+  command.add_flag("--leave-one-out", o->leave_one_out,
+                   "fit without each paper of the set fit in turn, and print what moves");
   add_json(command, o->files, o->json);
   add_output(command, o->files, "--figure", o->figure, check_figure,
              "draw published and predicted numbers, a chart for each experiment");

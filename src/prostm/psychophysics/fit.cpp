@@ -27,10 +27,6 @@ constexpr std::array<FittedParameter, kFittedParameters> kParameters = {{
     {"strength_noise", &ObserverParameters::strength_noise, 0.2, 20.0, true, false, true, true},
 }};
 
-bool has(const FittedParameter& parameter, Readout readout) {
-  return readout == Readout::Template ? parameter.of_template : parameter.of_category;
-}
-
 /// The start: the threshold from the force on a disk of 1.8 cm², at 200 Hz, that is just felt.
 ObserverParameters start_of(Laboratory& laboratory, PerceptModel model, Readout readout) {
   ObserverParameters start;
@@ -66,7 +62,7 @@ class Search {
 
   /// Tries values of a parameter, and keeps the middle of the best ones.
   void improve(const FittedParameter& parameter) {
-    const auto [values, losses] = tried(parameter);
+    const auto [values, losses] = tried(parameter, &Search::loss_of);
     const double lowest = *std::ranges::min_element(losses);
     // a flat minimum has no best value: its middle
     std::size_t first = losses.size(), last = 0;
@@ -84,8 +80,8 @@ class Search {
   }
 
   ParameterRange range_of(const FittedParameter& parameter) {
-    const auto [values, losses] = tried(parameter);
-    const double most = std::min(loss(), *std::ranges::min_element(losses)) + kRange;
+    const auto [values, losses] = tried(parameter, &Search::loss_of_cells);
+    const double most = *std::ranges::min_element(losses) + kRange;
     ParameterRange out{now_.*parameter.value, now_.*parameter.value, true};
     for (std::size_t i = 0; i < losses.size(); ++i) {
       if (losses[i] > most) continue;
@@ -97,15 +93,28 @@ class Search {
   }
 
  private:
-  double loss_of(const ObserverParameters& parameters) {
+  std::vector<PredictedExperiment> predicted(const ObserverParameters& parameters) {
     const Observer observer(model_, readout_, parameters);
-    std::vector<PredictedExperiment> predicted;
-    for (const Experiment* one : experiments_)
-      predicted.push_back(predict(laboratory_, &observer, *one));
-    return sum_of(paper_losses(predicted), ExperimentSet::Fit);
+    std::vector<PredictedExperiment> out;
+    for (const Experiment* one : experiments_) out.push_back(predict(laboratory_, &observer, *one));
+    return out;
   }
 
-  std::pair<std::vector<double>, std::vector<double>> tried(const FittedParameter& parameter) {
+  /// (X16): each paper weighs one.
+  double loss_of(const ObserverParameters& parameters) {
+    return sum_of(paper_losses(predicted(parameters)), ExperimentSet::Fit);
+  }
+
+  /// Each number weighs one, as in a likelihood.
+  double loss_of_cells(const ObserverParameters& parameters) {
+    double sum = 0.0;
+    for (const PredictedExperiment& one : predicted(parameters))
+      sum += one.loss * static_cast<double>(one.cells.size());
+    return sum;
+  }
+
+  std::pair<std::vector<double>, std::vector<double>> tried(
+      const FittedParameter& parameter, double (Search::*loss)(const ObserverParameters&)) {
     const double unit = parameter.relative ? start_.*parameter.value : 1.0;
     std::vector<double> values, losses;
     for (int i = 0; i < kValues; ++i) {
@@ -115,7 +124,7 @@ class Search {
                                    : parameter.low + share * (parameter.high - parameter.low)));
       ObserverParameters next = now_;
       next.*parameter.value = values.back();
-      losses.push_back(loss_of(next));
+      losses.push_back((this->*loss)(next));
     }
     return {values, losses};
   }
@@ -161,6 +170,10 @@ FittedObserver observer_from_json(const JsonNode& node) {
 
 std::span<const FittedParameter> fitted_parameters() {
   return kParameters;
+}
+
+bool has(const FittedParameter& parameter, Readout readout) {
+  return readout == Readout::Template ? parameter.of_template : parameter.of_category;
 }
 
 std::string FittedObserver::name() const {

@@ -21,10 +21,12 @@ struct FittedParameter {
   bool of_template, of_category;  ///< which readouts have it
 };
 std::span<const FittedParameter> fitted_parameters();
+/// Whether observers with this readout have the parameter.
+bool has(const FittedParameter& parameter, Readout readout);
 inline constexpr std::size_t kFittedParameters = 5;
 
-/// A fitted parameter's range of losses at most 1.92 above the lowest: 95 % where losses are
-/// log-likelihoods and the others are fixed.
+/// The range of a parameter in which the sum of the losses of all numbers is at most 1.92 above its
+/// lowest, with the others fixed: 95 % where losses are log-likelihoods.
 struct ParameterRange {
   double low = 0.0, high = 0.0;
   bool determined = false;  ///< whether both ends are within the bounds
