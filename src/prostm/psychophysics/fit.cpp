@@ -114,7 +114,7 @@ class Search {
   }
 
   std::pair<std::vector<double>, std::vector<double>> tried(
-      const FittedParameter& parameter, double (Search::*loss)(const ObserverParameters&)) {
+      const FittedParameter& parameter, double (Search::*loss_at)(const ObserverParameters&)) {
     const double unit = parameter.relative ? start_.*parameter.value : 1.0;
     std::vector<double> values, losses;
     for (int i = 0; i < kValues; ++i) {
@@ -124,7 +124,7 @@ class Search {
                                    : parameter.low + share * (parameter.high - parameter.low)));
       ObserverParameters next = now_;
       next.*parameter.value = values.back();
-      losses.push_back((this->*loss)(next));
+      losses.push_back((this->*loss_at)(next));
     }
     return {values, losses};
   }
