@@ -102,19 +102,27 @@ describe("an opened page", () => {
 
 describe("numbers", () => {
   it("on a paused page are those of the program", async () => {
-    await page.locator("#play").click();
-    await until(page, () => window.prostm.state?.transport.playing === false && window.prostm.frame?.run.paused === true, 0, "a pause");
-
-    // the same frame on both sides
     let theirs: Json = {}, ours: { run: Record<string, string>; numbers: [string, string][] } = { run: {}, numbers: [] };
-    await expect.poll(async () => {
-      theirs = await program.numbers();
-      ours = await page.evaluate(() => ({
-        run: Object.fromEntries([...document.querySelectorAll<HTMLElement>("[data-run]")].map((e) => [e.dataset.run!, e.textContent!])),
-        numbers: [...document.querySelectorAll<HTMLElement>("[data-number]")].map((e): [string, string] => [e.dataset.number!, e.textContent!]),
-      }));
-      return ours.run.sequence === String(theirs.sequence);
-    }, { timeout: 30_000, interval: 20 }).toBe(true);
+    const pause = async () => {
+      await page.locator("#play").click();
+      await until(page, () => window.prostm.state?.transport.playing === false && window.prostm.frame?.run.paused === true, 0, "a pause");
+      // the same frame on both sides
+      await expect.poll(async () => {
+        theirs = await program.numbers();
+        ours = await page.evaluate(() => ({
+          run: Object.fromEntries([...document.querySelectorAll<HTMLElement>("[data-run]")].map((e) => [e.dataset.run!, e.textContent!])),
+          numbers: [...document.querySelectorAll<HTMLElement>("[data-number]")].map((e): [string, string] => [e.dataset.number!, e.textContent!]),
+        }));
+        return ours.run.sequence === String(theirs.sequence);
+      }, { timeout: 30_000, interval: 20 }).toBe(true);
+    };
+    // at a moment with a plan: the recording has none at its ends
+    await pause();
+    for (let round = 0; round < 5 && (theirs.numbers as Json).rmse === null; ++round) {
+      await page.locator("#play").click();
+      await newFrames(page, 20);
+      await pause();
+    }
 
     const run = theirs.run as Json, numbers = theirs.numbers as Json;
     expect(Number(ours.run.world_steps)).toBe(run.world_steps);
