@@ -41,6 +41,16 @@ struct Soak {
   double time = 0.0, looked = 0.0;
 };
 
+TEST(SoakLog, TheLastPartContainsADipThatWasCountedLate) {
+  Soak soak;
+  soak.to(kSeconds);
+  soak.counts.device.missed_blocks = 1;
+  soak.log.count(kSeconds + 0.3, soak.counts);
+  soak.log.end(kSeconds, soak.use);
+  EXPECT_EQ(soak.dip().time, kSeconds + 0.3);
+  EXPECT_EQ(soak.log.parts()[2].to, kSeconds + 0.3);
+}
+
 TEST(SoakLog, AQuietRunHasNoDips) {
   Soak soak;
   soak.to(kSeconds);

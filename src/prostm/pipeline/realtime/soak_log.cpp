@@ -112,7 +112,8 @@ void SoakLog::use(double time, const MachineUse& use) {
 void SoakLog::end(double time, const MachineUse& use) {
   this->use(time, use);
   auto& part = parts_[static_cast<std::size_t>(part_at(time))];
-  part.to = std::min(part.to, time);
+  // on a loaded machine the counters are sampled for the last time a little late
+  part.to = std::max(std::min(part.to, time), counted_at_);
 }
 
 void SoakLog::forget_evidence() {
