@@ -14,7 +14,7 @@ namespace prostm {
 namespace {
 
 const std::string kExample = R"({
-  "format": "prostm-experiment-1", "id": "example", "title": "An example", "paper": "None",
+  "format": "prostm-experiment/1", "id": "example", "title": "An example", "paper": "None",
   "paper_id": "none", "set": "fit", "participants": "2", "note": "", "height_mm": 200,
   "stimuli": {
     "point": {"kind": "am", "points_mm": [[0, 0]], "frequencies_hz": [200]},

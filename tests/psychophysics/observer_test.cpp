@@ -25,7 +25,7 @@ FeltStimulus lumps(const std::vector<Vec2>& places, double strength = 1.0) {
             strength * std::exp(-(x - place).squaredNorm() / (2.0 * 6e-3 * 6e-3));
     }
   }
-  out.map = blurred(kPatch, out.map, kTouchBlur);
+  out.map = blurred(kPatch, out.map, kTouchResolution);
   out.strength = places.empty() ? 0.0 : strength;
   for (const Vec2& place : places) out.course.push_back({0.25, place});
   return out;
@@ -97,7 +97,7 @@ TEST(Observer, TwoIsAnsweredMoreOftenAtWiderGaps) {
 TEST(Observer, ThePlaceOfALumpHasTheCramerRaoBound) {
   // dense places approach information π/(2 s²) / κ² of a Gaussian with spacing s, whatever its
   // width
-  const double expected = kTouchBlur * std::sqrt(2.0 / kPi);
+  const double expected = kTouchResolution * std::sqrt(2.0 / kPi);
   EXPECT_NEAR(observer(Readout::Template).place_noise(lumps({Vec2::Zero()})), expected,
               0.05 * expected);
   EXPECT_NEAR(observer(Readout::Template, 2.0).place_noise(lumps({Vec2::Zero()})), 2.0 * expected,

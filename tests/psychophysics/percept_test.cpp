@@ -81,7 +81,6 @@ TEST(PerceptModels, StrengthIsProportionalToPressure) {
 }
 
 TEST(PerceptModels, PeakAndAreaAreThoseOfTheSkin) {
-  const Presenter unused(SkinSettings{}, calibrated_usx_array());
   SkinResponse response(SkinModel(SkinSettings{}), kPatch);
   response.prepare(0.02, 64);
   Random random(3);

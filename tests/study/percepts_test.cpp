@@ -57,17 +57,17 @@ TEST(Percepts, TwoPointsAreDistinguishedAsByPeople) {
 TEST(Percepts, PositionsAreRelativeToTheHand) {
   TargetField skin = flat_skin().patches.front();
   std::vector<double> map(skin.size(), 1.0);
-  const Percept flat = at_places(skin, map, palm_up(0.0, -0.02));
+  const Percept flat = HandPlaces(skin, palm_up(0.0, -0.02)).of(map);
   // a Gaussian preserves its integral: 1 where the hand is far from the raster's edge
   EXPECT_NEAR(*std::ranges::max_element(flat), 1.0, 1e-3);
   map.assign(skin.size(), 0.0);
   map[skin.index(20, 12)] = 2.0;
-  const Percept spot = at_places(skin, map, palm_up(0.0, 0.0));
+  const Percept spot = HandPlaces(skin, palm_up(0.0, 0.0)).of(map);
   skin.origin += Vec2(0.013, -0.007);
-  const Percept moved = at_places(skin, map, palm_up(0.013, -0.007));
+  const Percept moved = HandPlaces(skin, palm_up(0.013, -0.007)).of(map);
   for (std::size_t i = 0; i < spot.size(); ++i) EXPECT_NEAR(moved[i], spot[i], 1e-12);
   skin.skin[skin.index(20, 12)] = 0;
-  for (const double v : at_places(skin, map, palm_up(0.0, 0.0))) EXPECT_EQ(v, 0.0);
+  for (const double v : HandPlaces(skin, palm_up(0.0, 0.0)).of(map)) EXPECT_EQ(v, 0.0);
 }
 
 TEST(Percepts, NothingIsFeltWithoutPressure) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <cmath>
 
 #include "prostm/psychophysics/presenter.hpp"
@@ -50,8 +49,7 @@ void StudyPredictions::feel() {
   if (!go_on_()) throw StudyStopped{};
 }
 
-std::vector<ModelParticipant> StudyPredictions::pool(const Observer& observer, std::size_t method,
-                                                     bool threshold) {
+std::vector<ModelParticipant> StudyPredictions::pool(const Observer& observer, std::size_t method) {
   std::vector<ModelParticipant> out;
   for (const HandPercepts& hand : hands_) {
     std::array<std::vector<ModelPercept>, 2> felt;
@@ -59,22 +57,22 @@ std::vector<ModelParticipant> StudyPredictions::pool(const Observer& observer, s
       for (const StimulusPercept& moment : hand[s].*kStudyMethods[method].percepts)
         felt[s].push_back(moment.by_model[static_cast<std::size_t>(observer.model())]);
     }
-    for (ModelParticipant& who : observe_as(observer, felt, threshold, kObserverLapse))
+    for (ModelParticipant& who : observe_as(observer, felt, kObserverLapse))
       out.push_back(std::move(who));
   }
   return out;
 }
 
-const StudyQuantities& StudyPredictions::of(const Observer& observer, bool threshold) {
-  const std::string key =
-      fmt::format("{} {} {}", name_of(observer.model()), name_of(observer.readout()), threshold);
+const StudyQuantities& StudyPredictions::of(const Observer& observer) {
+  const std::string key = fmt::format("{} {} {}", name_of(observer.model()),
+                                      name_of(observer.readout()), observer.parameters().threshold);
   const auto found = known_.find(key);
   if (found != known_.end()) return found->second;
   feel();
   StudyQuantities out;
   for (std::size_t m = 0; m < kStudyMethods.size(); ++m) {
     const std::string method = kStudyMethods[m].name;
-    const std::vector<ModelParticipant> people = pool(observer, m, threshold);
+    const std::vector<ModelParticipant> people = pool(observer, m);
     std::array<double, 2> right{};
     for (std::size_t s = 0; s < right.size(); ++s) {
       for (const ModelParticipant& who : people)

@@ -26,13 +26,13 @@ class StudyPredictions {
   StudyPredictions(int hands, std::function<bool()> go_on);
 
   /// Returns all quantities for an observer. The first call computes the percepts, which takes a
-  /// minute. @param threshold false: participants without a threshold.
-  const StudyQuantities& of(const Observer& observer, bool threshold);
+  /// minute.
+  const StudyQuantities& of(const Observer& observer);
   /// Mean strength with each method in each scene, (X7), over all hands [m, or Pa].
   std::array<std::array<double, 2>, 2> strengths(PerceptModel model);
 
  private:
-  std::vector<ModelParticipant> pool(const Observer& observer, std::size_t method, bool threshold);
+  std::vector<ModelParticipant> pool(const Observer& observer, std::size_t method);
   void feel();
 
   SimulateOptionsGiven given_;

@@ -7,19 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "prostm/core/text/json.hpp"
+#include "prostm/psychophysics/detail/json_name.hpp"
 #include "prostm/psychophysics/detail/published_files.hpp"
 
 namespace prostm {
 namespace {
 
 constexpr double kAnything = 1e6;
-
-template <class E>
-E name_from(const JsonNode& node) {
-  const auto value = value_named<E>(node.text());
-  if (!value) node.fail(must_be(node.text(), kNames<E>));
-  return *value;
-}
 
 std::string text_or_nothing(const JsonNode& node, const char* key) {
   return node.has(key) ? node.at(key, "a text").text() : std::string();
@@ -50,6 +44,13 @@ std::size_t stimuli_of(ExperimentTask task) {
   }
 }
 
+bool are_equally_spaced(const std::vector<double>& x) {
+  if (x.size() < 3 || x[1] <= x[0]) return false;
+  for (std::size_t i = 1; i < x.size(); ++i)
+    if (std::abs(x[i] - x[i - 1] - (x[1] - x[0])) > 1e-6 * (x[1] - x[0])) return false;
+  return true;
+}
+
 void read_stimuli(const JsonNode& node, const Experiment& of, Cell& cell) {
   if (node.has("stimuli")) {
     const JsonNode list = node.at("stimuli", "a list of names");
@@ -68,6 +69,10 @@ void read_stimuli(const JsonNode& node, const Experiment& of, Cell& cell) {
                              cell.task == ExperimentTask::Curvature;
   if (has_abscissae && (cell.abscissae.size() != cell.stimuli.size() || cell.stimuli.size() < 2))
     node.fail("must have two stimuli or more, and an abscissa for each");
+  if (cell.task == ExperimentTask::StrongestSpeed && !are_equally_spaced(cell.abscissae))
+    node.fail("must have three abscissae or more, equally spaced and ascending");
+  if (cell.task == ExperimentTask::Curvature && cell.stimuli.size() % 2 != 0)
+    node.fail("must have pairs of stimuli");
   cell.quantity = text_or_nothing(node, "quantity");
   const bool is_study = cell.task == ExperimentTask::OneOrFour;
   if (is_study && std::ranges::find(kStudyQuantities, cell.quantity) == kStudyQuantities.end())
@@ -101,7 +106,7 @@ Cell cell_from_json(const JsonNode& node, const Experiment& of) {
                    "source"});
   Cell cell;
   cell.name = node.at("name", "a text").text();
-  cell.task = name_from<ExperimentTask>(node.at("task", "the name of a task"));
+  cell.task = named_value<ExperimentTask>(node.at("task", "the name of a task"));
   read_stimuli(node, of, cell);
   read_gap(node, cell);
   if (node.has("value")) cell.value = node.at("value", "a number").number(-kAnything, kAnything);
@@ -114,7 +119,7 @@ Cell cell_from_json(const JsonNode& node, const Experiment& of) {
     node.fail("must have low or high, low below high");
   if (cell.value && (std::isinf(cell.low) || std::isinf(cell.high)))
     node.fail("has a value, so it must have low and high");
-  cell.source = name_from<Source>(node.at("source", "text, figure or secondary"));
+  cell.source = named_value<Source>(node.at("source", "text, figure or secondary"));
   return cell;
 }
 
@@ -125,7 +130,7 @@ Experiment parse_experiment(const std::string& text, const std::string& file) {
   const JsonNode root(document, file);
   root.allow_only({"format", "id", "title", "paper", "paper_id", "doi", "place", "set",
                    "participants", "note", "height_mm", "stimuli", "cells", "agreement"});
-  require_format(root, "prostm-experiment-1");
+  require_format(root, "prostm-experiment/1");
   Experiment out;
   out.id = root.at("id", "a text").text();
   out.title = root.at("title", "a text").text();
@@ -133,7 +138,7 @@ Experiment parse_experiment(const std::string& text, const std::string& file) {
   out.paper_id = root.at("paper_id", "a text").text();
   out.doi = text_or_nothing(root, "doi");
   out.place = text_or_nothing(root, "place");
-  out.set = name_from<ExperimentSet>(root.at("set", "fit or held-out"));
+  out.set = named_value<ExperimentSet>(root.at("set", "fit or held-out"));
   out.participants = root.at("participants", "a text").text();
   out.note = root.at("note", "a text").text();
   out.height = from_milli(root.at("height_mm", "a height").number(50.0, 600.0));

@@ -1,6 +1,7 @@
 #include "prostm/psychophysics/felt_stimulus.hpp"
 
 #include <algorithm>
+#include <boost/math/statistics/linear_regression.hpp>
 #include <cmath>
 
 #include "prostm/core/units.hpp"
@@ -42,12 +43,11 @@ double delay_of(const Vibration& vibration, const std::vector<std::complex<doubl
   const int half = static_cast<int>(0.5 * length / patch.cell);
   std::vector<std::complex<double>> turns;
   for (int k = 0; k < times; ++k) turns.push_back(std::polar(1.0, 2.0 * kPi * k / times));
-  double sum = 0.0, sum_x = 0.0, sum_t = 0.0, sum_xx = 0.0, sum_xt = 0.0;
+  std::vector<double> place, arrival;
   for (int i = std::max(0, patch.cols / 2 - half); i < std::min(patch.cols, patch.cols / 2 + half);
        ++i) {
     double energy = 0.0, moment = 0.0;
     for (int k = 0; k < times; ++k) {
-      const double t = vibration.period * k / times;
       double w = 0.0;
       for (int n = 1; n <= vibration.harmonics; ++n) {
         const auto at = static_cast<std::size_t>(n - 1) * patch.size() +
@@ -55,18 +55,14 @@ double delay_of(const Vibration& vibration, const std::vector<std::complex<doubl
         w += (amplitudes[at] * turns[static_cast<std::size_t>(n * k % times)]).real();
       }
       energy += w * w;
-      moment += w * w * t;
+      moment += w * w * vibration.period * k / times;
     }
     if (energy <= 0.0) continue;
-    const double x = patch.cell * i, t = moment / energy;
-    sum += 1.0;
-    sum_x += x;
-    sum_t += t;
-    sum_xx += x * x;
-    sum_xt += x * t;
+    place.push_back(patch.cell * i);
+    arrival.push_back(moment / energy);
   }
-  const double spread = sum * sum_xx - sum_x * sum_x;
-  return spread > 0.0 ? length * (sum * sum_xt - sum_x * sum_t) / spread : 0.0;
+  if (place.size() < 2) return 0.0;
+  return length * boost::math::statistics::simple_ordinary_least_squares(place, arrival).second;
 }
 
 FeltStimulus felt_from(PerceptModel model, const SkinPatch& patch, const Moments& moments) {
@@ -82,7 +78,7 @@ FeltStimulus felt_from(PerceptModel model, const SkinPatch& patch, const Moments
     for (double& v : energy) v *= v;
     out.course.push_back({moments.duration[i], centroid(patch, energy)});
   }
-  out.map = blurred(patch, mean, kTouchBlur);
+  out.map = blurred(patch, mean, kTouchResolution);
   out.strength = strongest(model, patch, moments);
   return out;
 }
@@ -96,7 +92,7 @@ FeltStimulus nothing_felt() {
 }  // namespace
 
 std::vector<double> FeltStimulus::places(const Vec2& shift) const {
-  return at_grid(patch, map, kTouchBlur, shift);
+  return at_grid(patch, map, kTouchResolution, shift);
 }
 
 Feeler::Feeler(const SkinSettings& skin, const TransducerArray& array, std::function<void()> step)

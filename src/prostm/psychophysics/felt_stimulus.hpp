@@ -12,8 +12,6 @@
 
 namespace prostm {
 
-/// Resolution of touch on the palm [m]: the error with which one focal point is localised [Y-4].
-inline constexpr double kTouchBlur = 8.5e-3;
 /// Time over which a percept is summed [s], (X9).
 inline constexpr double kPerceptTime = 0.25;
 
@@ -26,13 +24,13 @@ struct FeltPlace {
 /// One stimulus as one model feels it.
 struct FeltStimulus {
   SkinPatch patch{48, 48, 2e-3};
-  std::vector<double> map;        ///< mean strength over time, blurred by kTouchBlur, rows·cols
-  double strength = 0.0;          ///< largest over time, (X9)
+  std::vector<double> map;  ///< mean strength over time, blurred by kTouchResolution, rows·cols
+  double strength = 0.0;    ///< largest over time, (X9)
   std::vector<FeltPlace> course;  ///< moment by moment
   double delay = 0.0;  ///< of a sweep: arrival at its last place after that at its first [s]; 0 for
                        ///< the models without time, and for other stimuli
 
-  /// Returns the map at places, spaced by kTouchBlur.
+  /// Returns the map at places, spaced by kTouchResolution.
   std::vector<double> places(const Vec2& shift = Vec2::Zero()) const;
 };
 

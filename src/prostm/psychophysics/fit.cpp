@@ -8,23 +8,24 @@
 #include <nlohmann/json.hpp>
 
 #include "prostm/core/text/json.hpp"
+#include "prostm/psychophysics/detail/json_name.hpp"
 #include "prostm/psychophysics/detail/published_files.hpp"
 
 namespace prostm {
 namespace {
 
-constexpr const char* kFormat = "prostm-observers-1";
+constexpr const char* kFormat = "prostm-observers/1";
 constexpr int kValues = 61;        // of a parameter that are tried
 constexpr int kRounds = 4;         // over all parameters
 constexpr double kRange = 1.92;    // half of χ² at 95 % for one degree of freedom
 constexpr double kForce = 0.4e-3;  // of the published threshold that the threshold starts from [N]
 
 constexpr std::array<FittedParameter, kFittedParameters> kParameters = {{
-    {"threshold", &ObserverParameters::threshold, 0.1, 10.0, true, true, true, true},
-    {"noise", &ObserverParameters::noise, 0.02, 20.0, true, false, true, true},
-    {"criterion", &ObserverParameters::criterion, -3.0, 3.0, false, false, true, true},
-    {"place", &ObserverParameters::place, 1e-3, 50e-3, true, false, false, true},
-    {"strength_noise", &ObserverParameters::strength_noise, 0.2, 20.0, true, false, true, true},
+    {"threshold", &ObserverParameters::threshold, 0.1, 10.0, true, true, false},
+    {"noise", &ObserverParameters::noise, 0.02, 20.0, true, false, false},
+    {"criterion", &ObserverParameters::criterion, -3.0, 3.0, false, false, false},
+    {"place", &ObserverParameters::place, 1e-3, 50e-3, true, false, true},
+    {"strength_noise", &ObserverParameters::strength_noise, 0.2, 20.0, true, false, false},
 }};
 
 /// The start: the threshold from the force on a disk of 1.8 cm², at 200 Hz, that is just felt.
@@ -138,15 +139,8 @@ class Search {
 
 FittedObserver observer_from_json(const JsonNode& node) {
   FittedObserver out;
-  const auto name = [&](const char* key, auto value) {
-    using E = decltype(value);
-    const JsonNode text = node.at(key, "a name");
-    const auto found = value_named<E>(text.text());
-    if (!found) text.fail(must_be(text.text(), kNames<E>));
-    return *found;
-  };
-  out.model = name("model", PerceptModel::Peak);
-  out.readout = name("readout", Readout::Template);
+  out.model = named_value<PerceptModel>(node.at("model", "a percept model"));
+  out.readout = named_value<Readout>(node.at("readout", "template or category"));
   out.loss = node.at("loss", "a number").number(0.0, 1e6);
   std::vector<std::string> known = {"model", "readout", "loss"};
   for (std::size_t i = 0; i < kFittedParameters; ++i) {
@@ -173,7 +167,7 @@ std::span<const FittedParameter> fitted_parameters() {
 }
 
 bool has(const FittedParameter& parameter, Readout readout) {
-  return readout == Readout::Template ? parameter.of_template : parameter.of_category;
+  return readout == Readout::Category || !parameter.category_only;
 }
 
 std::string FittedObserver::name() const {

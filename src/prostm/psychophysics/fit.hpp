@@ -18,7 +18,7 @@ struct FittedParameter {
   double ObserverParameters::*value;
   double low, high;  ///< over the start for `relative`
   bool logarithmic, relative;
-  bool of_template, of_category;  ///< which readouts have it
+  bool category_only;  ///< whether template observers lack it
 };
 std::span<const FittedParameter> fitted_parameters();
 /// Whether observers with this readout have the parameter.

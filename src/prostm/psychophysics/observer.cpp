@@ -9,6 +9,7 @@
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/psychophysics/places.hpp"
+#include "prostm/psychophysics/template_observer.hpp"
 
 namespace prostm {
 namespace {
@@ -29,10 +30,10 @@ double dot(const Values& a, const Values& b) {
 }
 
 /// Log-likelihood of values under an alternative, up to a constant: noise of `variance` in each
-/// place, and of kCommonNoise of the whole. Sherman and Morrison's formula.
+/// place, and of kStrengthNoise of the whole. Sherman and Morrison's formula.
 double log_likelihood(const Values& values, const Values& alternative, double variance) {
   const double power = dot(alternative, alternative);
-  const double common = kCommonNoise * kCommonNoise * power / variance;
+  const double common = kStrengthNoise * kStrengthNoise * power / variance;
   double square = 0.0, along = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double difference = values[i] - alternative[i];
@@ -110,24 +111,14 @@ double Observer::says_two(const FeltStimulus& felt, const std::array<Vec2, 2>& e
   if (readout_ == Readout::Category)
     return probability((dip_between(felt, ends[0], ends[1]) - parameters_.criterion) /
                        parameters_.noise);
-  // the optimal linear decision between the two that are certain, (Y2) to (Y4)
-  const Values first = one.places(), second = two.places(), values = felt.places();
-  Values middle(first.size()), weight(first.size());
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    middle[i] = 0.5 * (first[i] + second[i]);
-    weight[i] = second[i] - first[i];
-  }
-  const double noise = 0.5 * (local_noise(one) + local_noise(two)), variance = noise * noise;
-  if (!(variance > 0.0)) return 0.5;
-  const double common = kCommonNoise * kCommonNoise;
-  const double along = common * dot(middle, weight) / (variance + common * dot(middle, middle));
-  double evidence = 0.0, power = 0.0;
-  for (std::size_t i = 0; i < weight.size(); ++i) {
-    const double w = (weight[i] - along * middle[i]) / variance;
-    evidence += w * (values[i] - middle[i]);
-    power += w * weight[i];
-  }
-  return power > 0.0 ? probability(evidence / std::sqrt(power) - parameters_.criterion) : 0.5;
+  const Values first = one.places(), second = two.places();
+  double largest = 0.0;  // of the middle between them
+  for (std::size_t i = 0; i < first.size(); ++i)
+    largest = std::max(largest, 0.5 * (first[i] + second[i]));
+  if (largest <= 0.0) return 0.5;
+  const double noise = 0.5 * (local_noise(one) + local_noise(two));
+  const TemplateObserver decision(first, second, {noise / largest, kStrengthNoise});
+  return probability(decision.evidence(felt.places()) - parameters_.criterion);
 }
 
 double Observer::place_noise(const FeltStimulus& felt) const {
@@ -158,7 +149,7 @@ std::vector<std::vector<double>> Observer::confusions(
   for (std::size_t presented = 0; presented < known.size(); ++presented) {
     for (int answer = 0; answer < kAnswers; ++answer) {
       Values values = known[presented];
-      const double common = 1.0 + kCommonNoise * random.normal();
+      const double common = 1.0 + kStrengthNoise * random.normal();
       for (double& v : values) v = common * v + noise * random.normal();
       std::size_t best = 0;
       double highest = -std::numeric_limits<double>::infinity();

@@ -25,9 +25,6 @@ inline constexpr std::array<std::string_view, 2> kNames<Readout> = {"template", 
 /// Spread of thresholds between people: standard deviation [dB]. Not fitted: no experiment of the
 /// fitted set has it.
 inline constexpr double kThresholdSpread = 4.0;
-/// Noise of the strength as a whole in a template observer: the just noticeable difference [S-7].
-inline constexpr double kCommonNoise = 0.2;
-
 /// Free parameters of an observer.
 struct ObserverParameters {
   double threshold = 0.0;  ///< T, strength at the threshold of detection [m, or Pa]

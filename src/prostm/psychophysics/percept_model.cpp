@@ -74,21 +74,6 @@ void shuffle_cells(std::vector<double>& map) {
 
 }  // namespace
 
-std::string_view about(PerceptModel model) {
-  constexpr std::array<std::string_view, kPerceptModels> kAbout = {
-      "largest perceived displacement (S7)",
-      "perceived energy over the area (S8)",
-      "fourth power of the perceived displacement over the area",
-      "Pacinian and RA channel",
-      "largest perceived curvature of the surface",
-      "control: largest radiation pressure",
-      "control: mean pressure, blurred as in Eq. (1)",
-      "control: mean pressure",
-      "control: peak, with shuffled places",
-      "control: pressure by frequency, without waves"};
-  return kAbout[static_cast<std::size_t>(model)];
-}
-
 void PerceptEnergy::add(const PerceptEnergy& other, double share) {
   fast.resize(other.fast.size());
   slow.resize(other.slow.size());

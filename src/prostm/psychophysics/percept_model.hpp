@@ -35,8 +35,6 @@ inline constexpr std::size_t kPerceptModels = kNames<PerceptModel>.size();
 constexpr bool is_control(PerceptModel model) {
   return model >= PerceptModel::Pressure;
 }
-/// Returns what it is, for tables.
-std::string_view about(PerceptModel model);
 
 /// The energy of a percept in each cell, the mean over time. The unit is the square of the model's
 /// unit of strength: m, or Pa for controls.

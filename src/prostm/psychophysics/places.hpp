@@ -10,6 +10,10 @@
 
 namespace prostm {
 
+/// Standard deviation of the Gaussian that models the skin's spatial resolution [m]: the
+/// localisation error for AM focal points on the palm [Y-4].
+inline constexpr double kTouchResolution = 8.5e-3;
+
 /// Returns a map convolved with a Gaussian of standard deviation σ [m]; nothing comes from outside
 /// the patch.
 std::vector<double> blurred(const SkinPatch& patch, std::span<const double> map, double sigma);

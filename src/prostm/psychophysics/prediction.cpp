@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/statistics/bivariate_statistics.hpp>
 #include <cmath>
 #include <limits>
 
 #include "prostm/core/units.hpp"
+#include "prostm/experiments/experiments.hpp"
 
 namespace prostm {
 namespace {
@@ -17,31 +19,6 @@ constexpr double kMissedBound = 2.0;  // of a bound: two standard errors
 constexpr double kFirstGap = 6e-3, kLastGap = 60e-3, kGapStep = 3e-3;
 // gaps that are felt as one and as two in most answers [m]
 constexpr double kOne = 15e-3, kTwo = 45e-3;
-
-/// Returns the x of the largest y, by a parabola through it and its neighbours.
-double place_of_largest(const std::vector<double>& x, const std::vector<double>& y) {
-  const auto at = static_cast<std::size_t>(std::ranges::max_element(y) - y.begin());
-  if (at == 0 || at + 1 == y.size()) return x[at];
-  const double before = y[at] - y[at - 1], after = y[at] - y[at + 1];
-  const double offset = before + after > 0.0 ? 0.5 * (before - after) / (before + after) : 0.0;
-  return x[at] + offset * (offset < 0.0 ? x[at] - x[at - 1] : x[at + 1] - x[at]);
-}
-
-double correlation(const std::vector<double>& x, const std::vector<double>& y) {
-  const auto n = static_cast<double>(x.size());
-  double mx = 0.0, my = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    mx += x[i] / n;
-    my += y[i] / n;
-  }
-  double xx = 0.0, yy = 0.0, xy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += (x[i] - mx) * (x[i] - mx);
-    yy += (y[i] - my) * (y[i] - my);
-    xy += (x[i] - mx) * (y[i] - my);
-  }
-  return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
-}
 
 /// Whether a guess is a share of answers.
 bool is_share(const Cell& cell) {
@@ -115,8 +92,10 @@ std::optional<double> Laboratory::over_abscissae(const Observer& observer, const
   std::vector<double> strengths;
   for (const std::string& name : cell.stimuli)
     strengths.push_back(felt(observer, of, name).strength);
-  return cell.task == ExperimentTask::StrongestSpeed ? place_of_largest(cell.abscissae, strengths)
-                                                     : correlation(cell.abscissae, strengths);
+  if (cell.task == ExperimentTask::StrongestSpeed)
+    return experiments::peak_place(cell.abscissae, strengths);
+  const double r = boost::math::statistics::correlation_coefficient(cell.abscissae, strengths);
+  return std::isfinite(r) ? r : 0.0;  // strengths that are all the same
 }
 
 std::optional<double> Laboratory::identified(const Observer& observer, const Experiment& of,
@@ -163,6 +142,7 @@ std::optional<double> Laboratory::weber(const Observer& observer, const Experime
 
 std::optional<double> Laboratory::predict(const Observer& observer, const Experiment& of,
                                           const Cell& cell) {
+  step_();
   switch (cell.task) {
     case ExperimentTask::ForceThreshold: {
       const auto& disk = std::get<Disk>(of.stimuli.at(cell.stimuli[0]));

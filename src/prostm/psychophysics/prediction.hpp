@@ -18,7 +18,7 @@ class Laboratory {
  public:
   /// @param step called repeatedly; an exception that it throws ends the computation.
   Laboratory(const SkinSettings& skin, const TransducerArray& array, std::function<void()> step)
-      : feeler_(skin, array, std::move(step)) {}
+      : step_(std::move(step)), feeler_(skin, array, step_) {}
 
   /// Predicts a quantity of the paper's study, one of kStudyQuantities.
   using Study = std::function<std::optional<double>(const Observer&, const std::string& quantity)>;
@@ -46,6 +46,7 @@ class Laboratory {
                                    const Cell& cell);
   std::optional<double> weber(const Observer& observer, const Experiment& of, const Cell& cell);
 
+  std::function<void()> step_;
   Feeler feeler_;
   Study study_;
 };

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "prostm/core/units.hpp"
+#include "prostm/psychophysics/detail/json_name.hpp"
 
 namespace prostm {
 namespace {
@@ -26,10 +27,7 @@ std::vector<Vec2> points_from_json(const JsonNode& node) {
 }
 
 Outline outline_from_json(const JsonNode& node) {
-  const JsonNode name = node.at("outline", "the name of an outline");
-  const auto outline = value_named<Outline>(name.text());
-  if (!outline) name.fail(must_be(name.text(), kNames<Outline>));
-  return *outline;
+  return named_value<Outline>(node.at("outline", "the name of an outline"));
 }
 
 AmPoints am_from_json(const JsonNode& node) {

@@ -61,24 +61,22 @@ std::vector<Stay> stays_of(const SlowPath& course) {
   return out;
 }
 
-/// Sums of P_n = (2/K) Σ_k p(kT/K) e^{−2πi nk/K}, (S9), and the mean and the largest pressure.
-void fold(std::span<const double> pressure, int samples, Vibration& out) {
-  const std::size_t cells = out.patch.size();
-  out.mean.assign(cells, 0.0);
-  out.largest.assign(cells, 0.0);
-  out.pressure.assign(static_cast<std::size_t>(out.harmonics) * cells, 0.0);
-  for (int k = 0; k < samples; ++k) {
-    const double* p = pressure.data() + static_cast<std::size_t>(k) * cells;
-    for (std::size_t c = 0; c < cells; ++c) {
-      out.mean[c] += p[c] / samples;
-      out.largest[c] = std::max(out.largest[c], p[c]);
-    }
-    for (int n = 1; n <= out.harmonics; ++n) {
-      const auto turn = static_cast<double>(static_cast<std::int64_t>(n) * k % samples);
-      const std::complex<double> wave = std::polar(2.0 / samples, -2.0 * kPi * turn / samples);
-      std::complex<double>* to = out.pressure.data() + static_cast<std::size_t>(n - 1) * cells;
-      for (std::size_t c = 0; c < cells; ++c) to[c] += wave * p[c];
-    }
+/// The harmonics P_n of a loop's pressure, (S9), in place of those of the skin's displacement.
+class PressureHarmonics : public SkinMotion {
+ public:
+  /// @param motion the skin's response to the same loop.
+  PressureHarmonics(const SkinMotion& motion, const PressureLoop& loop)
+      : SkinMotion(motion.patch()) {
+    choose_harmonics(loop.period, loop.samples, motion.frequency(motion.harmonics()));
+    load(loop);
+  }
+};
+
+/// Appends all harmonics of a motion.
+void append(const SkinMotion& motion, std::vector<std::complex<double>>& out) {
+  for (int n = 1; n <= motion.harmonics(); ++n) {
+    const auto harmonic = motion.displacement(n);
+    out.insert(out.end(), harmonic.begin(), harmonic.end());
   }
 }
 
@@ -89,17 +87,20 @@ int samples_for(double period) {
 
 }  // namespace
 
-Vibration vibration_of(const SkinMotion& motion, double period, int samples,
-                       std::span<const double> pressure) {
+Vibration vibration_of(const SkinMotion& motion, const PressureLoop& loop) {
   Vibration out;
   out.patch = motion.patch();
-  out.period = period;
+  out.period = loop.period;
   out.harmonics = motion.harmonics();
-  for (int n = 1; n <= out.harmonics; ++n) {
-    const auto w = motion.displacement(n);
-    out.displacement.insert(out.displacement.end(), w.begin(), w.end());
+  append(motion, out.displacement);
+  append(PressureHarmonics(motion, loop), out.pressure);
+  const std::size_t cells = out.patch.size();
+  out.mean.assign(cells, 0.0);
+  out.largest.assign(cells, 0.0);
+  for (std::size_t i = 0; i < loop.pressure.size(); ++i) {
+    out.mean[i % cells] += loop.pressure[i] / loop.samples;
+    out.largest[i % cells] = std::max(out.largest[i % cells], loop.pressure[i]);
   }
-  fold(pressure, samples, out);
   return out;
 }
 
@@ -130,14 +131,14 @@ const experiments::StmField& Presenter::stm_field(const Palm& palm) {
 void Presenter::vibrate(const Palm& palm, double period, int samples,
                         const std::vector<double>& pressure, double duration,
                         const OnMoment& on_moment) {
-  // one kernel for each period: the patch follows from whether the stimulus is a sweep
-  auto& response = responses_[{period, samples, palm.patch.rows}];
+  auto& response = responses_[{period, samples, palm.patch.rows, palm.patch.cols}];
   if (!response) {
     response = std::make_unique<SkinResponse>(skin_, palm.patch);
     response->prepare(period, samples, kHighest);
   }
-  response->respond({period, samples, pressure});
-  on_moment(vibration_of(*response, period, samples, pressure), duration);
+  const PressureLoop pressed{period, samples, pressure};
+  response->respond(pressed);
+  on_moment(vibration_of(*response, pressed), duration);
 }
 
 void Presenter::present_am(const AmPoints& am, double height, double duration,

@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <span>
 #include <tuple>
 #include <vector>
 
@@ -33,10 +32,8 @@ struct Vibration {
   double frequency(int n) const { return n / period; }
 };
 
-/// Returns the vibration of a computed response. @param pressure samples × cells, which it responds
-/// to [Pa].
-Vibration vibration_of(const SkinMotion& motion, double period, int samples,
-                       std::span<const double> pressure);
+/// Returns the vibration of a computed response to a loop.
+Vibration vibration_of(const SkinMotion& motion, const PressureLoop& loop);
 
 /// One moment of a stimulus: a vibration, for a time.
 using OnMoment = std::function<void(const Vibration& vibration, double duration)>;
@@ -65,7 +62,7 @@ class Presenter {
   SkinModel skin_;
   TransducerArray array_;
   std::map<std::tuple<int, int, double>, std::unique_ptr<experiments::StmField>> fields_;
-  std::map<std::tuple<double, int, int>, std::unique_ptr<SkinResponse>> responses_;
+  std::map<std::tuple<double, int, int, int>, std::unique_ptr<SkinResponse>> responses_;
 };
 
 }  // namespace prostm

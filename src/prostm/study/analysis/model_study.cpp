@@ -128,7 +128,7 @@ ModelParticipant observe(const FeltScenes& felt, const ObserverNoise& noise, dou
 
 std::vector<ModelParticipant> observe_as(const Observer& observer,
                                          const std::array<std::vector<ModelPercept>, 2>& felt,
-                                         bool threshold, double lapse) {
+                                         double lapse) {
   FeltScenes numbers;
   double strength = 0.0;
   for (std::size_t s = 0; s < felt.size(); ++s) {
@@ -143,14 +143,12 @@ std::vector<ModelParticipant> observe_as(const Observer& observer,
     const double quantile = (i + 0.5) / kThresholds;
     const double z = boost::math::quantile(boost::math::normal(), quantile);
     const double own =
-        threshold ? observer.parameters().threshold * std::pow(10.0, kThresholdSpread * z / 20.0)
-                  : 0.0;
+        observer.parameters().threshold * std::pow(10.0, kThresholdSpread * z / 20.0);
     const double weak = strength > 0.0 ? own / strength : 0.0;
     const double noise = observer.parameters().noise * std::hypot(1.0, weak);
     out.push_back(observer.readout() == Readout::Template
-                      ? observe(numbers, {noise, kCommonNoise}, lapse)
+                      ? observe(numbers, {noise, kStrengthNoise}, lapse)
                       : observe_number(numbers, noise, lapse));
-    if (!threshold) break;
   }
   return out;
 }

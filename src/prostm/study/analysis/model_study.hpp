@@ -10,7 +10,7 @@
 
 #include "prostm/core/random.hpp"
 #include "prostm/psychophysics/observer.hpp"
-#include "prostm/study/analysis/observer.hpp"
+#include "prostm/psychophysics/template_observer.hpp"
 #include "prostm/study/analysis/percepts.hpp"
 #include "prostm/study/analysis/scores.hpp"
 #include "prostm/study/task/statistics.hpp"
@@ -42,10 +42,10 @@ ModelParticipant observe(const FeltScenes& felt, const ObserverNoise& noise, dou
 /// The same for percepts of any model: for each hand, participants of several thresholds, which
 /// spread by kThresholdSpread about the observer's. A template observer has its places as above; a
 /// category observer the deepest dip, and its training's middle as the criterion.
-/// @param felt moments of both scenes. @param threshold false: participants without a threshold.
+/// Without a threshold, 0, all of a hand are alike. @param felt moments of both scenes.
 std::vector<ModelParticipant> observe_as(const Observer& observer,
                                          const std::array<std::vector<ModelPercept>, 2>& felt,
-                                         bool threshold, double lapse);
+                                         double lapse);
 
 struct StudyShape {
   int participants = 8;  ///< participants with each method

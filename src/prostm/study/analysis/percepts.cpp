@@ -69,14 +69,13 @@ std::size_t places() {
   return static_cast<std::size_t>((2 * kSideways + 1) * (kTowardsWrist + kTowardsTips + 1));
 }
 
-/// Places of at_places() as a map of its own.
+/// HandPlaces as a map of its own.
 constexpr SkinPatch kPlaces{kTowardsWrist + kTowardsTips + 1, 2 * kSideways + 1, kTouchResolution};
 
-ModelPercept model_percept(PerceptModel model, const Vibration& vibration,
-                           const TargetField& raster, const Pose& X_DH) {
+ModelPercept model_percept(PerceptModel model, const Vibration& vibration, const HandPlaces& hand) {
   const PerceptEnergy energy = percept_energy(model, vibration);
   ModelPercept out;
-  out.places = at_places(raster, strength_map(model, energy), X_DH);
+  out.places = hand.of(strength_map(model, energy));
   out.strength = strength_of(model, vibration.patch, energy);
   FeltStimulus felt;
   felt.patch = kPlaces;
@@ -92,21 +91,27 @@ bool is_silent(const LoopSamples& loop) {
 
 }  // namespace
 
-Percept at_places(const TargetField& raster, std::span<const double> map, const Pose& X_DH) {
+HandPlaces::HandPlaces(const TargetField& raster, const Pose& X_DH) {
+  for (std::size_t c = 0; c < raster.size(); ++c)
+    if (raster.skin[c] != 0) skin_.push_back(c);
   const double s2 = kTouchResolution * kTouchResolution;
   const double scale = raster.cell * raster.cell / (2.0 * kPi * s2);
   const Pose X_PH = raster.X_DP.inverse() * X_DH;
-  Percept out;
   for (int j = -kTowardsWrist; j <= kTowardsTips; ++j) {
     for (int i = -kSideways; i <= kSideways; ++i) {
       const Vec2 place = (X_PH * (kTouchResolution * Vec3(i, 0, -j))).head<2>();
-      double sum = 0.0;
-      for (std::size_t c = 0; c < map.size(); ++c) {
-        if (raster.skin[c] == 0) continue;
-        sum += map[c] * std::exp(-(raster.position(c) - place).squaredNorm() / (2.0 * s2));
-      }
-      out.push_back(scale * sum);
+      for (const std::size_t c : skin_)
+        weight_.push_back(scale *
+                          std::exp(-(raster.position(c) - place).squaredNorm() / (2.0 * s2)));
     }
+  }
+}
+
+Percept HandPlaces::of(std::span<const double> map) const {
+  Percept out(places());
+  for (std::size_t place = 0; place < out.size(); ++place) {
+    for (std::size_t k = 0; k < skin_.size(); ++k)
+      out[place] += weight_[place * skin_.size() + k] * map[skin_[k]];
   }
   return out;
 }
@@ -121,12 +126,14 @@ StimulusFeeler::StimulusFeeler(const PipelineSettings& settings, double full_sca
 StimulusPercept StimulusFeeler::feel(const Plan& plan, const TargetFrame& target,
                                      const Pose& X_DH) {
   StimulusPercept out{Percept(places()), Percept(places()), 0.0};
+  for (ModelPercept& of : out.by_model) of.places.resize(places());
   if (plan.empty()) return out;
   const TargetField& raster = target.patches.front();
   std::vector<double> field(raster.size());
   quasi_static_field(plan, 0, raster, plan.foci.empty() ? settings_.plan.sigma : settings_.am.sigma,
                      settings_.plan.gain_law(), field);
-  out.field = at_places(raster, field, X_DH);
+  const HandPlaces hand(raster, X_DH);
+  out.field = hand.of(field);
   const LoopSamples loop = plan_loop(plan, target, emit_, settings_.emission_rate());
   if (is_silent(loop)) return out;
   const LoopDriveSettings drive{.focus = {}, .transducer = {}, .full_scale_pa = sound_};
@@ -138,11 +145,11 @@ StimulusPercept StimulusFeeler::feel(const Plan& plan, const TargetFrame& target
   const int parts = felt_parts(loop);
   FeelingSkin skin(raster);
   const FeltField felt = skin.feel(raster, period, parts, pressure);
-  out.skin = at_places(raster, felt.percept, X_DH);
+  out.skin = hand.of(felt.percept);
   out.strength = felt.intensity;
-  const Vibration vibration = vibration_of(skin.motion(), period, parts, pressure);
+  const Vibration vibration = vibration_of(skin.motion(), {period, parts, pressure});
   for (std::size_t m = 0; m < kPerceptModels; ++m)
-    out.by_model[m] = model_percept(static_cast<PerceptModel>(m), vibration, raster, X_DH);
+    out.by_model[m] = model_percept(static_cast<PerceptModel>(m), vibration, hand);
   return out;
 }
 

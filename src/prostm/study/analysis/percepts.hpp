@@ -15,21 +15,17 @@
 #include "prostm/pipeline/settings.hpp"
 #include "prostm/plan/plan.hpp"
 #include "prostm/psychophysics/percept_model.hpp"
-#include "prostm/study/analysis/observer.hpp"
+#include "prostm/psychophysics/places.hpp"
+#include "prostm/psychophysics/template_observer.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm {
 
 /// Acoustic pressure of a focal point at intensity 1 in the simulated study [Pa, rms].
 inline constexpr double kStudySound = 450.0;
-/// Standard deviation of the Gaussian that models the skin's spatial resolution [m]: the
-/// localisation error for AM focal points on the palm [Y-4].
-inline constexpr double kTouchResolution = 8.5e-3;
 /// Noise of each place. It is set so that two AM focal points 45 mm apart are distinguished from
 /// two 15 mm apart, which feel like one, as well as people do: d′ = 2.64 [Y-5]. A test checks this.
 inline constexpr double kTouchNoise = 1.18;
-/// Noise of the strength: the just noticeable difference [S-7].
-inline constexpr double kStrengthNoise = 0.2;
 /// Share of trials in which an observer guesses [Y-3].
 inline constexpr double kObserverLapse = 0.03;
 
@@ -48,10 +44,19 @@ struct StimulusPercept {
   std::array<ModelPercept, kPerceptModels> by_model = {};
 };
 
-/// Samples a map of a raster at places of the hand: a grid of spacing kTouchResolution over palm
-/// and fingers, smoothed by a Gaussian of that width.
-/// @param X_DH palm joint: −z to the fingertips, +y dorsal. @param map rows·cols
-Percept at_places(const TargetField& raster, std::span<const double> map, const Pose& X_DH);
+/// Places of a hand on a raster: a grid of spacing kTouchResolution over palm and fingers.
+class HandPlaces {
+ public:
+  /// @param X_DH palm joint: −z to the fingertips, +y dorsal.
+  HandPlaces(const TargetField& raster, const Pose& X_DH);
+
+  /// Samples a map at the places, smoothed by a Gaussian of kTouchResolution. @param map rows·cols
+  Percept of(std::span<const double> map) const;
+
+ private:
+  std::vector<std::size_t> skin_;  // cells with skin
+  std::vector<double> weight_;     // places × these cells
+};
 
 /// Computes percepts of plans played on the array of the settings.
 class StimulusFeeler {
@@ -60,7 +65,7 @@ class StimulusFeeler {
   /// pressure of a focal point at intensity 1 [Pa, rms].
   StimulusFeeler(const PipelineSettings& settings, double full_scale, double sound);
 
-  /// @param X_DH as for at_places(). All zeros for a plan without pressure.
+  /// @param X_DH as for HandPlaces. All zeros for a plan without pressure.
   StimulusPercept feel(const Plan& plan, const TargetFrame& target, const Pose& X_DH);
 
  private:

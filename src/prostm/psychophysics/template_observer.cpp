@@ -1,4 +1,4 @@
-#include "prostm/study/analysis/observer.hpp"
+#include "prostm/psychophysics/template_observer.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>

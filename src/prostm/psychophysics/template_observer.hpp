@@ -15,6 +15,9 @@ struct ObserverNoise {
   double common = 0.0;  ///< noise of a factor common to all numbers; 0 or more
 };
 
+/// Common noise of a strength: the just noticeable difference [S-7].
+inline constexpr double kStrengthNoise = 0.2;
+
 class TemplateObserver {
  public:
   /// @throws std::invalid_argument: templates that are empty, differ in size or are not finite;
