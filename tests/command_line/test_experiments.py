@@ -10,6 +10,7 @@ from conftest import ROOT
 def test_an_experiment_is_printed_with_published_and_predicted_numbers(prostm):
     result = prostm("experiments", "howard-2023", "--model", "peak")
     assert "howard-2023: Gap of two focal points (fit)" in result.stdout
+    assert "participants: not in the abstract" in result.stdout
     assert "peak, template" in result.stdout and "peak, category" in result.stdout
     assert "area" not in result.stdout
     assert "Parameters: SHA-256 " in result.stdout
@@ -70,6 +71,9 @@ def test_a_figure_is_drawn(prostm, tmp_path):
     (["--readout", "both"], "--readout must be template or category"),
     (["--set", "all"], "--set must be fit or held-out"),
     (["howard-2023", "--set", "held-out"], "no experiment of --set held-out is named"),
+    (["howard-2023", "--fit", "f.json"], "exclude each other"),
+    (["--fit", "f.json", "--json", "-"], "exclude each other"),
+    (["--leave-one-out", "--figure", "f.png"], "exclude each other"),
 ])
 def test_unknown_names_get_a_sentence(refuses, arguments, sentence):
     refuses("experiments", *arguments, words=[sentence])

@@ -99,11 +99,19 @@ Json column_json(const Column& column) {
   return out;
 }
 
+/// "authors: title. journal, Sec. III, doi:10.…"
+std::string where_words(const Experiment& of) {
+  std::string words = of.paper;
+  if (!of.place.empty()) words += ", " + of.place;
+  if (!of.doi.empty()) words += ", doi:" + of.doi;
+  return words;
+}
+
 void print_cells(std::FILE* out, const std::vector<Column>& columns) {
   for (std::size_t e = 0; e < columns.front().experiments.size(); ++e) {
     const Experiment& of = *columns.front().experiments[e].experiment;
-    fmt::print(out, "\n{}: {} ({})\n  {}\n  {}\n", of.id, of.title, name_of(of.set), of.paper,
-               of.note);
+    fmt::print(out, "\n{}: {} ({})\n  {}\n", of.id, of.title, name_of(of.set), where_words(of));
+    fmt::print(out, "  participants: {}\n  {}\n", of.participants, of.note);
     for (std::size_t c = 0; c < of.cells.size(); ++c) {
       fmt::print(out, "  {:<44} published {}\n", of.cells[c].name, published_text(of.cells[c]));
       for (const Column& column : columns) {
@@ -149,8 +157,9 @@ Json study_rows(StudyPredictions& study, const Observers& chosen) {
     for (const bool threshold : {false, true}) {
       Json& row = rows.emplace_back(
           Json{{"observer", of.name()}, {"threshold", threshold}, {"quantities", Json::object()}});
-      for (const auto& [name, value] : study.of(of.observer(), threshold))
-        row["quantities"][name] = value;
+      FittedObserver as = of;
+      if (!threshold) as.parameters.threshold = 0.0;
+      for (const auto& [name, value] : study.of(as.observer())) row["quantities"][name] = value;
       for (std::size_t m = 0; m < strengths.size(); ++m) {
         for (const double strength : strengths[m])
           row["above_threshold_db"][kStudyMethods[m].name].push_back(
@@ -265,7 +274,8 @@ int leave_one_out(const ExperimentsOptionsGiven& options, Laboratory& laboratory
   Json rows = Json::array();
   const Observers chosen = chosen_observers(options);
   std::vector<std::string> papers;
-  for (const Experiment* one : fitted_experiments("")) papers.push_back(one->paper_id);
+  for (const Experiment* one : fitted_experiments(""))
+    if (papers.empty() || papers.back() != one->paper_id) papers.push_back(one->paper_id);
   for (const FittedObserver& frozen : frozen_observers()) {
     if (std::ranges::find(chosen, std::pair(frozen.model, frozen.readout)) == chosen.end())
       continue;
@@ -291,6 +301,7 @@ int leave_one_out(const ExperimentsOptionsGiven& options, Laboratory& laboratory
     }
   }
   write_json(options.json, Json{{"leave_one_out", rows}});
+  say_written(out, options.json);
   return 0;
 }
 
@@ -301,11 +312,11 @@ int fit(const ExperimentsOptionsGiven& options, Laboratory& laboratory, Progress
     fitted.push_back(fit_observer(laboratory, model, readout, experiments));
     progress.clear();
     const FittedObserver& of = fitted.back();
-    fmt::print(prose(options.json), "{:<26} loss {:.3f}, threshold {:.3g}, noise {:.3g}\n",
-               of.name(), of.loss, of.parameters.threshold, of.parameters.noise);
+    fmt::print(stdout, "{:<26} loss {:.3f}, threshold {:.3g}, noise {:.3g}\n", of.name(), of.loss,
+               of.parameters.threshold, of.parameters.noise);
   }
   write_file(options.fit, observers_text(fitted, experiments));
-  say_written(prose(options.json), options.fit);
+  say_written(stdout, options.fit);
   return 0;
 }
 
@@ -322,7 +333,7 @@ int experiments_command(const ExperimentsOptionsGiven& options) {
   });
   StudyPredictions study(kHands, [&] { return !interrupt.requested(); });
   laboratory.simulate_with([&](const Observer& observer, const std::string& quantity) {
-    return std::optional(study.of(observer, true).at(quantity));
+    return std::optional(study.of(observer).at(quantity));
   });
   try {
     if (!options.fit.empty()) return fit(options, laboratory, progress);

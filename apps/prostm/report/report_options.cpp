@@ -36,17 +36,30 @@ void add_experiments(Command app, Work& work) {
       "experiments",
       "published experiments with people, and what models of touch predict for them");
   auto o = std::make_shared<ExperimentsOptionsGiven>();
-  command.add_option("names", o->names, "experiments by name; default: all").type_name("NAME");
-  add_name(command, "--set", o->set, "only the experiments of this set: fit or held-out");
+  const Option names =
+      command.add_option("names", o->names, "experiments by name; default: all").type_name("NAME");
+  const Option set =
+      add_name(command, "--set", o->set, "only the experiments of this set: fit or held-out");
   add_name(command, "--model", o->model, "only this percept model; default: all");
   add_name(command, "--readout", o->readout, "only this readout: template or category");
-  add_output(command, o->files, "--fit", o->fit, check_json_output,
-             "fit the observers to the experiments of the set fit, and write their parameters");
-  command.add_flag("--leave-one-out", o->leave_one_out,
-                   "fit without each paper of the set fit in turn, and print what moves");
+  const Option fit =
+      add_output(command, o->files, "--fit", o->fit, check_json_output,
+                 "fit the observers to the experiments of the set fit, and write their parameters")
+          .excludes(names)
+          .excludes(set);
+  const Option without =
+      command
+          .add_flag("--leave-one-out", o->leave_one_out,
+                    "fit without each paper of the set fit in turn, and print what moves")
+          .excludes(names)
+          .excludes(set)
+          .excludes(fit);
   add_json(command, o->files, o->json);
+  command.option("--json").excludes(fit);
   add_output(command, o->files, "--figure", o->figure, check_figure,
-             "draw published and predicted numbers, a chart for each experiment");
+             "draw published and predicted numbers, a chart for each experiment")
+      .excludes(fit)
+      .excludes(without);
   command.footer("Example:\n  prostm experiments howard-2023 --model peak");
   set_work(command, work, o->files, [o] { return experiments_command(*o); });
 }
