@@ -144,12 +144,16 @@ class StreamClient {
     return {};
   }
   /// Reads for this long, so that heartbeats do not fill the socket and displace later messages.
-  void pass_over(std::chrono::milliseconds time) {
+  /// @return whether it was never held up for so long that its subscription may have expired.
+  bool pass_over(std::chrono::milliseconds time) {
     const auto end = std::chrono::steady_clock::now() + time;
-    for (;;) {
-      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-          end - std::chrono::steady_clock::now());
-      if (left.count() <= 0) return;
+    bool kept = true;
+    for (auto last = std::chrono::steady_clock::now();;) {
+      const auto now = std::chrono::steady_clock::now();
+      kept = kept && now - last < std::chrono::milliseconds(700);
+      last = now;
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - now);
+      if (left.count() <= 0) return kept;
       next(static_cast<int>(left.count()));
     }
   }
