@@ -11,7 +11,7 @@
 #include "prostm/core/require.hpp"
 #include "prostm/io/array_file.hpp"
 #include "prostm/io/plan_file.hpp"
-#include "prostm/score/felt_skill.hpp"
+#include "prostm/score/plan_percept.hpp"
 #include "prostm/score/score.hpp"
 
 namespace prostm::python {
@@ -35,8 +35,10 @@ Metrics metrics_of(const PlanResult& result, int patch, const EmitSettings* emis
     const EmitSettings emit = result.emission(emission);
     const py::gil_scoped_release unlocked;
     WorkerPool pool(1);
-    metrics.felt_skill =
-        felt_skill(result.plan, frame, patch, emit, sample_rate, array_from_name(*array), pool);
+    const PlanPercept percept =
+        plan_percept(result.plan, frame, patch, emit, sample_rate, array_from_name(*array), pool);
+    metrics.felt_skill = percept.skill;
+    metrics.sensation_level = percept.sensation_level;
   }
   return metrics;
 }
@@ -149,16 +151,15 @@ void bind_result(py::module_& m) {
           "emission", [](const PlanResult& r) { return r.emission(nullptr); },
           "EmitSettings that play the plan, as a copy: the defaults with a full scale of the gain\n"
           "times the target's largest pressure, or those of the recording that contains the plan.")
-      .def(
-          "metrics", &metrics_of,
-          "Metrics of the field that is played, with the planner's sigma and gain.\n\n"
-          "emission: EmitSettings; None: the attribute emission. A full scale of 0 is the gain\n"
-          "times the target's largest pressure. array: a name, as --array takes it, or a file, "
-          "whose\n"
-          "output felt_skill judges; without it felt_skill is NaN. score_plan() gives the metrics\n"
-          "of the planned pressures.",
-          py::arg("patch") = 0, py::arg("emission") = py::none(),
-          py::arg("sample_rate") = kSampleRate, py::arg("array") = py::none())
+      .def("metrics", &metrics_of,
+           "Metrics of the field that is played, with the planner's sigma and gain.\n\n"
+           "emission: EmitSettings; None: the attribute emission. A full scale of 0 is the gain\n"
+           "times the target's largest pressure. array: a name, as --array takes it, or a file, "
+           "whose\n"
+           "output felt_skill and sensation_level judge; without it they are NaN. score_plan()\n"
+           "gives the metrics of the planned pressures.",
+           py::arg("patch") = 0, py::arg("emission") = py::none(),
+           py::arg("sample_rate") = kSampleRate, py::arg("array") = py::none())
       .def(
           "quasi_static_field", &field_of,
           "The reconstruction: Eq. (1) with the played pressures on the target's raster, (rows,\n"

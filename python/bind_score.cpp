@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "bindings.hpp"
 #include "plan_result.hpp"
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/core/require.hpp"
+#include "prostm/io/array_file.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/score/score.hpp"
 
@@ -80,6 +84,24 @@ void bind_score(py::module_& m) {
         py::arg("seed") = 1, py::arg("gain_exponent") = defaults.gain_exponent,
         py::arg("draw_rate") = defaults.draw_rate,
         py::arg("gain_from_skin") = defaults.gain_from_skin);
+  m.def(
+      "sensation_interval",
+      [](const std::string& array) {
+        const SensationInterval interval = sensation_interval(array_from_name(array));
+        return std::pair(interval.below, interval.above);
+      },
+      "Distances (below, above) from a sensation_level to the ends of its interval of 95 % over\n"
+      "people and arrays [dB]. array: a name, as --array takes it, or a file.",
+      py::arg("array") = "usx");
+  m.def(
+      "sensation_words",
+      [](double level, const std::string& array) {
+        require_between("level", level, -400.0, 400.0, "dB");
+        return sensation_words(level, array_from_name(array));
+      },
+      "A sensation_level with its interval, and what it means, as text. Raises ValueError for a\n"
+      "level that is not finite.",
+      py::arg("level"), py::arg("array") = "usx");
 }
 
 }  // namespace prostm::python

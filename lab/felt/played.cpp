@@ -5,7 +5,7 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/emit/loop_samples.hpp"
 #include "prostm/score/felt.hpp"
-#include "prostm/score/felt_skill.hpp"
+#include "prostm/score/plan_percept.hpp"
 
 namespace prostm::bench {
 namespace {

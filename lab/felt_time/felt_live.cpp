@@ -7,8 +7,8 @@
 #include "prostm/acoustics/field/loop_field.hpp"
 #include "prostm/acoustics/skin/skin_percept.hpp"
 #include "prostm/emit/compensation.hpp"
-#include "prostm/score/felt_skill.hpp"
 #include "prostm/score/physical.hpp"
+#include "prostm/score/plan_percept.hpp"
 #include "prostm/score/running_drives.hpp"
 
 namespace prostm::bench {

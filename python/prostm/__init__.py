@@ -18,7 +18,7 @@ their data alive. The interpreter's lock is released while planning, scoring, em
   recordings           Recording, GateResult
   shape of a field     field_shape, FieldShape
   quality              quasi_static_field, score_plan, score_field, controls, Metrics, Control
-  what is felt         felt_plan, FeltPlan, felt_skins, SkinSettings
+  what is felt         felt_plan, FeltPlan, felt_skins, SkinSettings, sensation_interval, sensation_words
   samples at 40 kHz    emit, Emitter, PathEmitter, EmitSettings, lift, LiftedPlan, LiftedPath, LiftedFocus,
                        drive_intensity, even_share, EmitStats, TakeOver
 """
@@ -39,7 +39,7 @@ from ._prostm import (AmPlanner, AmSettings, Control, EmitSettings, EmitStats, E
                       controls, drive_intensity, even_share, felt_plan, felt_skins, field_from_json, field_shape, field_to_json,
                       height_at, kMaxFieldCells, kMaxPatches, kMaxPathPoints, kMaxPaths, kMostSamples as _kMostSamples,
                       lift, max_pressure, plan_from_json, plan_to_json, quasi_static_field, read_field, read_plan,
-                      score_field, score_plan, write_field, write_plan)
+                      score_field, score_plan, sensation_interval, sensation_words, write_field, write_plan)
 
 __all__ = [
     "plan", "Planner", "PlanSettings", "PlanResult", "PlanStatus", "PlanStats", "PlanTrace",
@@ -49,7 +49,7 @@ __all__ = [
     "Plan", "FocalPath", "closed_length", "read_plan", "write_plan", "plan_from_json", "plan_to_json", "PlanFile",
     "Recording", "GateResult", "field_shape", "FieldShape",
     "quasi_static_field", "score_plan", "score_field", "controls", "Metrics", "Control",
-    "felt_plan", "FeltPlan", "felt_skins", "SkinSettings",
+    "felt_plan", "FeltPlan", "felt_skins", "SkinSettings", "sensation_interval", "sensation_words",
     "emit", "Emitter", "PathEmitter", "EmitSettings", "lift", "LiftedPlan", "LiftedPath", "LiftedFocus",
     "drive_intensity", "even_share",
     "EmitStats", "TakeOver", "InputError", "kMaxFieldCells", "kMaxPatches", "kMaxPathPoints", "kMaxPaths",

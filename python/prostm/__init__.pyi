@@ -154,6 +154,7 @@ class Metrics:
     overlap: float
     spill: float
     felt_skill: float
+    sensation_level: float
     def as_dict(self) -> dict[str, float]: ...
 
 class Control:
@@ -223,6 +224,8 @@ def score_field(target: TargetField, rendered: ArrayLike, coverage: float = 0.0)
 def controls(target: TargetField, sigma: float = 8.6e-3, gain: float = 1.4, length: float = 0.14,
              other: Optional[Plan] = None, seed: int = 1, gain_exponent: float = 0.0,
              draw_rate: float = 50.0, gain_from_skin: bool = False) -> list[Control]: ...
+def sensation_interval(array: str = "usx") -> tuple[float, float]: ...
+def sensation_words(level: float, array: str = "usx") -> str: ...
 
 class SkinSettings:
     def __init__(self, *, slow_speed: float = 3.0, fast_speed: float = 7.0, loss: float = 0.14,

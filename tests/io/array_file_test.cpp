@@ -15,7 +15,7 @@ using testing::HasSubstr;
 std::string example() {
   return R"({"format": "prostm-array/1", "name": "two", "frequency_hz": 40000, "radius_mm": 4.5,
  "directivity": "piston", "amplitude_pa_m": 3.4, "amplitude_interval_pa_m": [2.5, 8],
- "transducers_mm": [[-5, 0, 0], [5, 0.5, 0]], "normals": [[0, 0, 1], [0.6, 0, 0.8]]})";
+ "measured_amplitude_pa_m": 1.1, "transducers_mm": [[-5, 0, 0], [5, 0.5, 0]], "normals": [[0, 0, 1], [0.6, 0, 0.8]]})";
 }
 
 TransducerArray random_array(Random& random) {
@@ -27,6 +27,7 @@ TransducerArray random_array(Random& random) {
   array.amplitude = random.uniform(1.0, 5.0);
   array.amplitude_low = array.amplitude - random.uniform();
   array.amplitude_high = array.amplitude + random.uniform();
+  if (random.below(2) == 1) array.measured_amplitude = random.uniform(0.1, 5.0);
   const int count = 1 + random.below(40);
   for (int i = 0; i < count; ++i) {
     array.position.emplace_back(0.01 * i, random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
@@ -43,6 +44,7 @@ void expect_same(const TransducerArray& a, const TransducerArray& b) {
   EXPECT_EQ(a.amplitude, b.amplitude);
   EXPECT_EQ(a.amplitude_low, b.amplitude_low);
   EXPECT_EQ(a.amplitude_high, b.amplitude_high);
+  EXPECT_EQ(a.measured_amplitude, b.measured_amplitude);
   ASSERT_EQ(a.position.size(), b.position.size());
   ASSERT_EQ(a.normal.size(), b.normal.size());
   for (std::size_t i = 0; i < a.position.size(); ++i) {
@@ -76,20 +78,23 @@ TEST(ArrayFile, ReadsEveryMember) {
   EXPECT_EQ(array.amplitude, 3.4);
   EXPECT_EQ(array.amplitude_low, 2.5);
   EXPECT_EQ(array.amplitude_high, 8.0);
+  EXPECT_EQ(array.measured_amplitude, 1.1);
   ASSERT_EQ(array.position.size(), 2u);
   EXPECT_EQ(array.position[1], Vec3(0.005, 0.0005, 0.0));
   EXPECT_TRUE(array.normal[1].isApprox(Vec3(0.6, 0.0, 0.8), 1e-15));
 }
 
-TEST(ArrayFile, NormalsAndTheIntervalAreOptional) {
+TEST(ArrayFile, NormalsIntervalAndMeasurementAreOptional) {
   auto json = nlohmann::json::parse(example());
   json.erase("normals");
   json.erase("amplitude_interval_pa_m");
+  json.erase("measured_amplitude_pa_m");
   const TransducerArray array = array_from_json(json.dump(), "a.json");
   EXPECT_EQ(array.normal[0], Vec3::UnitZ());
   EXPECT_EQ(array.normal[1], Vec3::UnitZ());
   EXPECT_EQ(array.amplitude_low, 3.4);
   EXPECT_EQ(array.amplitude_high, 3.4);
+  EXPECT_EQ(array.measured_amplitude, 0.0);
 }
 
 TEST(ArrayFile, NearlyUnitNormalsAreNormalised) {

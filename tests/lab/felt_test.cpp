@@ -12,8 +12,8 @@
 #include "felt/tables.hpp"
 #include "prostm/core/file/file.hpp"
 #include "prostm/fields/felt_fields.hpp"
-#include "prostm/score/felt_skill.hpp"
 #include "prostm/score/physical.hpp"
+#include "prostm/score/plan_percept.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm::bench {
@@ -61,8 +61,8 @@ TEST(FeltJudge, ScoresLikeTheProgram) {
   Judge judge(array, field, {nominal()}, {});
   for (const Plan& plan : {two_circles(), two_foci()}) {
     const Judged judged = judge.judge(plan, field, 1);
-    EXPECT_NEAR(judged.felt.skill_8, felt_skill(plan, frame, 0, EmitSettings(), 40e3, array, pool),
-                1e-9);
+    EXPECT_NEAR(judged.felt.skill_8,
+                plan_percept(plan, frame, 0, EmitSettings(), 40e3, array, pool).skill, 1e-9);
     EXPECT_EQ(judged.skin.front(), judged.felt.skill_8);
     EXPECT_EQ(judged.readout[0], judged.felt.skill_8);
 

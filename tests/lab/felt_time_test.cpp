@@ -11,7 +11,7 @@
 #include "prostm/am/am_planner.hpp"
 #include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
-#include "prostm/score/felt_skill.hpp"
+#include "prostm/score/plan_percept.hpp"
 
 namespace prostm::bench {
 namespace {
@@ -142,7 +142,7 @@ void expect_as_its_loop(Method method, const std::vector<LivePlan>& plans, doubl
   TargetFrame frame;
   frame.patches.push_back(plans[0].target);
   WorkerPool pool(2);
-  const double loop = felt_skill(plans[0].plan, frame, 0, {}, 40e3, usx_array(), pool);
+  const double loop = plan_percept(plans[0].plan, frame, 0, {}, 40e3, usx_array(), pool).skill;
   EXPECT_NEAR(live.metrics.skill_8, loop, error);
   for (std::size_t c = 0; c < live.mean_target.size(); ++c) {
     ASSERT_NEAR(live.mean_target[c], plans[0].target.pressure[c], 1e-12);

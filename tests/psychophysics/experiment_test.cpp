@@ -129,7 +129,7 @@ TEST(Losses, APaperWeighsOne) {
 }
 
 TEST(Predictions, AForceThresholdIsProportionalToTheThreshold) {
-  Laboratory laboratory(SkinSettings{}, calibrated_usx_array(), [] {});
+  Laboratory laboratory(SkinSettings{}, at_measured_amplitude(usx_array()), [] {});
   const Experiment of = parse_experiment(kExample, "example.json");
   const auto force = [&](double threshold) {
     const Observer observer(PerceptModel::Peak, Readout::Template, {.threshold = threshold});
@@ -141,7 +141,7 @@ TEST(Predictions, AForceThresholdIsProportionalToTheThreshold) {
 }
 
 TEST(Fits, FindTheThresholdThatAForceDetermines) {
-  Laboratory laboratory(SkinSettings{}, calibrated_usx_array(), [] {});
+  Laboratory laboratory(SkinSettings{}, at_measured_amplitude(usx_array()), [] {});
   const Experiment of = parse_experiment(kExample, "example.json");
   const FittedObserver fitted =
       fit_observer(laboratory, PerceptModel::Area, Readout::Template, std::array{&of});

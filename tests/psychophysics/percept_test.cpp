@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/acoustics/skin/skin_percept.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
@@ -17,7 +18,7 @@ const SkinPatch kPatch{48, 48, 2e-3};
 
 Vibration vibration_of(const PresentedStimulus& stimulus) {
   Vibration out;
-  Presenter(SkinModel(SkinSettings{}).settings(), calibrated_usx_array())
+  Presenter(SkinModel(SkinSettings{}).settings(), at_measured_amplitude(usx_array()))
       .present(stimulus, 0.2, [&](const Vibration& vibration, double) { out = vibration; });
   return out;
 }
@@ -52,6 +53,13 @@ TEST(Presenter, ADiskHasItsForce) {
   for (std::size_t c = 0; c < disk.mean.size(); ++c)
     fundamental += std::abs(disk.pressure[c]) * kPatch.cell * kPatch.cell;
   EXPECT_NEAR(fundamental, 4.0 / kPi * 2e-4, 1e-3 * 2e-4);
+}
+
+TEST(Presenter, TheLowestForceFeltIsAtTheThresholdOfTouch) {
+  const Vibration disk = vibration_of(Disk{1.8e-4, 4e-4, 200.0, 0.0});
+  const double peak =
+      strength_of(PerceptModel::Peak, disk.patch, percept_energy(PerceptModel::Peak, disk));
+  EXPECT_NEAR(peak / kTouchThreshold, 1.0, 0.01);
 }
 
 TEST(Presenter, HarmonicsRestoreThePressure) {
@@ -150,7 +158,7 @@ TEST(Places, AShiftMovesTheMap) {
 }
 
 TEST(Feeler, AWindowSeesTheWholeOfAFastCourse) {
-  Feeler feeler(SkinSettings{}, calibrated_usx_array(), [] {});
+  Feeler feeler(SkinSettings{}, at_measured_amplitude(usx_array()), [] {});
   const auto course = [](double lap) {
     return SlowPath{
         .way = corners(Outline::Circle, 0.04), .lap = lap, .moments = 8, .frequency = 200.0};
@@ -168,7 +176,7 @@ TEST(Feeler, AWindowSeesTheWholeOfAFastCourse) {
 }
 
 TEST(Feeler, ASweepArrivesLaterAtItsEnd) {
-  Feeler feeler(SkinSettings{}, calibrated_usx_array(), [] {});
+  Feeler feeler(SkinSettings{}, at_measured_amplitude(usx_array()), [] {});
   const FeltByModel& felt = feeler.feel("sweep", Sweep{0.1, 1.0, 0.02, 62.5}, 0.15);
   EXPECT_NEAR(felt[static_cast<std::size_t>(PerceptModel::Pressure)].delay, 0.1, 0.02);
   EXPECT_NEAR(felt[static_cast<std::size_t>(PerceptModel::Peak)].delay, 0.1, 0.05);

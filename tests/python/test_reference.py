@@ -139,6 +139,19 @@ def test_the_felt_field_of_a_plan_needs_an_array(field):
         result.metrics(array="no-such")
 
 
+def test_the_strength_of_a_plan_is_a_level_above_the_threshold_of_touch(field):
+    result = prostm.plan(field, "best")
+    assert np.isnan(result.metrics().sensation_level)
+    level = result.metrics(array="usx").sensation_level
+    assert -30 < level < 30
+    below, above = prostm.sensation_interval("usx")
+    assert below == above == pytest.approx(np.hypot(3, np.hypot(1.96 * 4, 4)))
+    words = prostm.sensation_words(level, "usx")
+    assert words.startswith(f"about {abs(level):.0f} dB ") and f"({level - below:.0f} to {level + above:.0f} dB)" in words
+    with pytest.raises(ValueError, match="level"):
+        prostm.sensation_words(float("nan"))
+
+
 def test_a_plan_beats_its_controls(field):
     mine = prostm.plan(field, "paper").metrics()
     table = prostm.controls(field)

@@ -277,7 +277,7 @@ TEST(Wire, NumbersHaveDistinctNames) {
   ASSERT_GE(names.size(), static_cast<std::size_t>(kPlacedNumbers));
   EXPECT_EQ(names[kSpill], "spill");
   EXPECT_EQ(names[kFeltSkill], "felt_skill");
-  EXPECT_EQ(names.back(), "movement_mn");
+  EXPECT_EQ(names.back(), "sensation_level");
   for (std::size_t m = 0; m < quantities<Metrics>().size(); ++m)
     EXPECT_EQ(names[view_metric_places()[m]], quantities<Metrics>()[m].name);
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -187,13 +187,14 @@ TEST(Live, RatesDoNotDependOnHowOftenTheyAreRequested) {
   }));
 }
 
-TEST(Live, ReportsTheSkillOfTheFeltField) {
+TEST(Live, ReportsSkillAndLevelOfTheFeltField) {
   LiveRun run;
-  Page page(run.port());  // the skill is computed while a page watches
+  Page page(run.port());  // computed while a page watches
   EXPECT_TRUE(eventually([&] {
     page.next_frame();
-    const Json skill = run.numbers().at("numbers").at("felt_skill");
-    return skill.is_number() && skill <= 1.0;
+    const Json numbers = run.numbers().at("numbers");
+    const Json skill = numbers.at("felt_skill"), level = numbers.at("sensation_level");
+    return skill.is_number() && skill <= 1.0 && level.is_number() && level < 40.0;
   }));
 }
 

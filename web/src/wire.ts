@@ -14,7 +14,7 @@ export const kNumbers = [
   "max_target_pa", "full_scale_pa",
   "laps_completed", "tracker_age_ms", "intensity", "saturated", "sigma_mm",
   "setting_sigma_mm", "setting_rmse", "setting_correlation", "felt_skill",
-  "force_mn", "smoke_mn", "movement_mn",
+  "force_mn", "smoke_mn", "movement_mn", "sensation_level",
 ] as const;
 export type NumberName = (typeof kNumbers)[number];
 

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "common.hpp"
+#include "field/field_words.hpp"
 #include "prostm/acoustics/field/focus_width.hpp"
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/commit.hpp"
 #include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
@@ -15,8 +17,8 @@
 #include "prostm/io/physical_file.hpp"
 #include "prostm/io/plan_file.hpp"
 #include "prostm/io/widths_file.hpp"
-#include "prostm/score/felt_skill.hpp"
 #include "prostm/score/physical.hpp"
+#include "prostm/score/plan_percept.hpp"
 
 namespace prostm::app {
 namespace {
@@ -105,6 +107,12 @@ void print_power(std::FILE* out, const PhysicalReport& r) {
   }
 }
 
+/// Returns the level of the percept. A full scale that was given is that of intensity 1.
+double level_of(const PhysicalReport& r, bool full_scale_given) {
+  return full_scale_given ? sensation_level(r.felt->largest, *r.array)
+                          : loop_sensation_level(*r.felt, *r.loop, *r.array);
+}
+
 void print_felt(std::FILE* out, const PhysicalReport& r) {
   if (r.felt == nullptr) {
     fmt::print(out,
@@ -114,13 +122,14 @@ void print_felt(std::FILE* out, const PhysicalReport& r) {
   }
   fmt::print(out,
              "  felt like a vibration at 250 Hz of {:.2f} µm rms at the peak, {:.2f} µm over the "
-             "whole skin",
+             "whole skin, at the nominal amplitude",
              1e6 * r.felt->largest, 1e6 * r.felt->intensity);
   if (r.ghosts != nullptr) {
     fmt::print(out, "; {} ghosts above half of the peak, the strongest {:.0f} %", r.ghosts->count,
                100.0 * r.ghosts->largest);
   }
   fmt::print(out, "\n");
+  print_sensation(out, r.sensation_level, *r.array);
 }
 
 void print_spectrum(std::FILE* out, const PhysicalReport& r) {
@@ -293,6 +302,7 @@ int field_command(const FieldOptionsGiven& given) {
     judgement.felt =
         skin.feel(input.raster, loop.samples / loop.sample_rate, field.parts, field.part);
     report.felt = &judgement.felt;
+    report.sensation_level = level_of(report, given.full_scale_pa > 0.0);
     if (given.felt_spectrum) report.spectrum = felt_spectrum(input.raster, skin.motion());
   }
   if (input.has_target) judge(input, all.plan, report, judgement);

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/core/text/number_text.hpp"
 
 namespace prostm::app {
@@ -173,6 +175,15 @@ std::vector<std::string> control_warnings(const Metrics& played,
                       text.value, text.bound,
                       by_felt ? "its pressure hardly resembles the field"
                               : "the percept will hardly resemble the field")};
+}
+
+void print_sensation(std::FILE* out, double level, const TransducerArray& array) {
+  if (!std::isfinite(level)) return;
+  fmt::print(out, "  sensation level: {}\n", sensation_words(level, array));
+  if (array.measured_amplitude == 0.0) {
+    fmt::print(out, "  (at the nominal amplitude of {}; no sound level was measured at a focus)\n",
+               array.name);
+  }
 }
 
 }  // namespace prostm::app

@@ -1,9 +1,11 @@
 #pragma once
 /// Messages of `prostm plan` about the field it read, and about its plan.
 
+#include <cstdio>
 #include <string>
 #include <vector>
 
+#include "prostm/acoustics/array/array.hpp"
 #include "prostm/io/field/field_file.hpp"
 #include "prostm/score/score.hpp"
 
@@ -26,5 +28,8 @@ std::string verdict(const TargetField& field, const Plan& plan, const Metrics& p
 /// Returns a warning about the control that beats the plan, if any. @param by_felt as of verdict().
 std::vector<std::string> control_warnings(const Metrics& played,
                                           const std::vector<Control>& controls, bool by_felt);
+
+/// Prints how strongly the output of an array is felt; nothing for a level of NaN.
+void print_sensation(std::FILE* out, double level, const TransducerArray& array);
 
 }  // namespace prostm::app

@@ -22,8 +22,8 @@
 #include "prostm/pipeline/playable.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/plan/quasi_static/quasi_static.hpp"
-#include "prostm/score/felt_skill.hpp"
 #include "prostm/score/physical.hpp"
+#include "prostm/score/plan_percept.hpp"
 #include "prostm/score/pooled.hpp"
 #include "prostm/score/score.hpp"
 
@@ -252,7 +252,7 @@ void print_nothing(std::FILE* out, const std::string& field, bool pressed, bool 
 }
 
 void write_plan(const Result& r, const TargetField& target, const PipelineSettings& settings,
-                const std::string& json) {
+                bool array_given, const std::string& json) {
   PlanFileExtras extras;
   PowerShare power;
   if (!r.plan.empty()) {
@@ -263,6 +263,7 @@ void write_plan(const Result& r, const TargetField& target, const PipelineSettin
   if (extras.method == Method::ProStm) extras.preset = settings.plan.preset;
   extras.stats = &r.stats;
   extras.quality = &r.quality;
+  if (array_given) extras.array = &settings.transducers;
   extras.controls = &r.controls;
   extras.warnings = &r.warnings;
   extras.program = version_text();
@@ -277,14 +278,14 @@ bool counts_on_own_width(const PipelineSettings& settings) {
   return settings.plan.traits().is_fitted();
 }
 
-/// Returns the felt skill of the plan as the array of the settings plays it.
-double felt_skill_of(const TargetField& target, const Plan& plan,
-                     const PipelineSettings& settings) {
+/// Returns the percept of the plan as the array of the settings plays it.
+PlanPercept percept_of(const TargetField& target, const Plan& plan,
+                       const PipelineSettings& settings) {
   TargetFrame frame;
   frame.patches.push_back(target);
   WorkerPool pool(settings.threads);
-  return felt_skill(plan, frame, 0, emit_settings(settings, max_pressure(target)),
-                    settings.emission_rate(), settings.transducers, pool);
+  return plan_percept(plan, frame, 0, emit_settings(settings, max_pressure(target)),
+                      settings.emission_rate(), settings.transducers, pool);
 }
 
 void print_plan(std::FILE* out, const Result& r, const TargetField& target,
@@ -306,11 +307,14 @@ void print_plan(std::FILE* out, const Result& r, const TargetField& target,
     fmt::print(out, "  {:<44} {:>7.3f}\n", "this plan, by the field's weights", *r.weighted);
   }
   print_power(out, r.plan, power_limit(settings));
+  print_sensation(out, r.quality.played.sensation_level, settings.transducers);
 }
 
 void write_results(const Result& r, const TargetField& target, const PipelineSettings& settings,
                    const PlanOptionsGiven& given) {
-  if (!given.common.json.empty()) write_plan(r, target, settings, given.common.json);
+  if (!given.common.json.empty()) {
+    write_plan(r, target, settings, given.common.array.has_value(), given.common.json);
+  }
   if (given.common.figure.empty()) return;
   PlanFigure figure = as_figure(target, r.plan, r.trace, settings);
   figure.metrics = r.quality.played;
@@ -343,7 +347,9 @@ void judge(const TargetField& target, const PipelineSettings& settings,
   score(target, settings, widths, progress, r);
   if (!by_felt) return;
   progress.next("computing the percept");
-  r.quality.played.felt_skill = felt_skill_of(target, r.plan, settings);
+  const PlanPercept percept = percept_of(target, r.plan, settings);
+  r.quality.played.felt_skill = percept.skill;
+  r.quality.played.sensation_level = percept.sensation_level;
 }
 
 }  // namespace

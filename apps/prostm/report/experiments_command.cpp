@@ -328,7 +328,7 @@ int experiments_command(const ExperimentsOptionsGiven& options) {
   const auto chosen = chosen_observers(options);
   const Interrupt interrupt;
   Progress progress("computing the stimuli");
-  Laboratory laboratory(SkinSettings{}, calibrated_usx_array(), [&] {
+  Laboratory laboratory(SkinSettings{}, at_measured_amplitude(usx_array()), [&] {
     if (interrupt.requested()) throw StudyStopped{};
   });
   StudyPredictions study(kHands, [&] { return !interrupt.requested(); });

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/methods/comparison.hpp"
@@ -16,6 +19,12 @@ using AllMeans = std::array<Means, kWays.size()>;
 
 Json mean(const Distribution& of) {
   return of.count() > 0 ? Json(of.summary().mean) : Json(nullptr);
+}
+
+/// Sensation level of a mean percept [dB].
+Json sensation(const Distribution& percept_um) {
+  const double level = sensation_level(1e-6 * percept_um.summary().mean, usx_array());
+  return std::isnan(level) ? Json(nullptr) : Json(level);
 }
 
 Json shape_rows(const AllMeans& means) {
@@ -47,6 +56,7 @@ Json level_rows(const AllMeans& means, methods::Equal equal) {
                     {"pressure", mean(level.pressure)},
                     {"lobe", mean(level.lobe)},
                     {"percept", mean(level.percept)},
+                    {"sensation", sensation(level.percept)},
                     {"intensity", mean(level.intensity)},
                     {"ghost", mean(level.ghost)}});
   }
@@ -81,6 +91,7 @@ void add_tables(const AllMeans& means, Json& blocks) {
                                           {"pressure", "highest pressure", "Pa", 2},
                                           {"lobe", "beside the paths", "Pa", 2},
                                           {"percept", "strongest percept", "µm", 3},
+                                          {"sensation", "above threshold", "dB", 1},
                                           {"intensity", "strength of all", "µm", 3},
                                           {"ghost", "strongest ghost", "µm", 3}},
                                          level_rows(means, of.equal)));
@@ -91,13 +102,17 @@ void add_tables(const AllMeans& means, Json& blocks) {
 
 void make_methods(const ReportWork& work, Json& document) {
   const int frames = work.full_or_quick(12, 1);
-  document["values"] = {{"tried", frames}};
+  const double interval = std::round(sensation_interval(usx_array()).above);
+  document["values"] = {{"tried", frames}, {"interval", interval}};
   auto& blocks = document["blocks"];
   blocks.push_back(report::text_block(
       "The array of 16 × 16 transducers plays the plans of each method for {/values/tried} fields "
       "of each scene, spread over its time; transducers follow their drives with a lag, and the "
       "skin is the model of docs/design/skin.md. Levels depend on the quantity that is held equal, "
-      "so there are three tables of them. Fields are left out if the loop of a method takes too "
+      "so there are three tables of them. Levels above the threshold of touch are for the sound "
+      "level that was measured with this array; for 95 % of people and arrays they lie within "
+      "{/values/interval} dB. Other levels are for the nominal amplitude. Fields are left out if "
+      "the loop of a method takes too "
       "long for its percept to be computed. \"Flat\" is an idealised uniform field that no array "
       "can make. Ghosts are maxima of the percept, above half of its peak, where the target has no "
       "pressure."));

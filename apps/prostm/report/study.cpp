@@ -87,7 +87,7 @@ void add_analysis(const Analysis& analysis, Json& document) {
                            {"needed", "needed in a group", "people", 0}},
                           comparison_rows(analysis)));
   document["values"]["words"] = in_words(analysis);
-  blocks.push_back(report::text_block("{/values/words}"));
+  blocks.push_back(report::text_block("{/values/words} {/values/sensation_words}"));
 }
 
 /// A row of the table of observers.
@@ -185,7 +185,8 @@ void make_models(const ReportWork& work, Json& document) {
                         {"studies", given.studies},
                         {"am", 100.0 * kStudyMethods[0].of_people},
                         {"pro_stm", 100.0 * kStudyMethods[1].of_people},
-                        {"words", about_strength(rows, hands)}};
+                        {"words", about_strength(rows, hands)},
+                        {"sensation_words", about_sensation(hands, given.sound)}};
   auto& blocks = document["blocks"];
   blocks.push_back(report::text_block(
       "These are models, not people. They tell one plume from four by the percept of the skin "

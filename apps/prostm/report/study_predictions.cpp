@@ -34,8 +34,9 @@ double spread_of(const std::vector<ModelParticipant>& pool, const SimulateOption
 StudyPredictions::StudyPredictions(int hands, std::function<bool()> go_on)
     : go_on_(std::move(go_on)) {
   given_.hands = hands;
-  // the focus at full drive is intensity 1
-  given_.sound = 20e-6 * std::pow(10.0, kMeasuredLevel / 20.0);
+  // intensity 1 is a focus at full drive
+  const TransducerArray array = at_measured_amplitude(usx_array());
+  given_.sound = focus_pressure(array, Medium{}, Vec3(0.0, 0.0, 0.2));
 }
 
 void StudyPredictions::feel() {
@@ -44,7 +45,7 @@ void StudyPredictions::feel() {
   settings.plan.preset = Preset::Paper;
   settings.fluid.cells = given_.grid;
   settings.threads = 1;
-  settings.transducers = calibrated_usx_array();
+  settings.transducers = at_measured_amplitude(usx_array());
   hands_ = feel_hands(given_, settings, [&](int, int) { return go_on_(); });
   if (!go_on_()) throw StudyStopped{};
 }

@@ -17,6 +17,7 @@
 #include "prostm/io/recorder.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/track/live/tracker_news.hpp"
+#include "run/felt_plans.hpp"
 #include "run/instant.hpp"
 #include "run/mute_watch.hpp"
 #include "run/run_summary.hpp"
@@ -42,6 +43,7 @@ class Observer final : public RunObserver {
       const RecordedPlan made{plan.plan, plan.stats, plan.full_scale_pressure, plan.sigma};
       recorder_->append(contact.target, contact.hands, planned ? &made : nullptr, plan.gate);
     }
+    if (plan.status == PlanStatus::Planned) felt_.offer(contact, plan);
     if (picture_at_ && plan.status == PlanStatus::Planned) {
       const double away = std::abs(contact.target.time - *picture_at_);
       if (away < away_) {
@@ -96,6 +98,7 @@ class Observer final : public RunObserver {
   bool has_instant() const { return std::isfinite(away_); }
   const WorldFrame& contact() const { return contact_; }
   const PlanFrame& plan() const { return plan_; }
+  const FeltPlans& felt() const { return felt_; }
 
  private:
   void say_whether_muted() {
@@ -134,6 +137,7 @@ class Observer final : public RunObserver {
   double away_ = std::numeric_limits<double>::infinity();
   WorldFrame contact_;
   PlanFrame plan_;
+  FeltPlans felt_;
   std::function<void(const RunSummary&)> report_;
   bool reported_ = false, array_gone_ = false;
   std::optional<MuteWatch> mutes_;
@@ -202,6 +206,8 @@ struct Ending {
     json["tracker"] = tracker_json(tracker);
     json["hand_file"] = reading_json(reading);
     json["array"] = pipeline.device().description();
+    const std::optional<FeltLevels> felt = observer.felt().levels(settings);
+    json["sensation"] = felt_levels_json(felt, settings.transducers);
     json["settings"] = settings_to_json(settings_groups(settings));
     Attempts attempts;
     attempts.add([&] {
@@ -217,6 +223,7 @@ struct Ending {
     attempts.add([&] { draw(summary, never_came(tracker)); });
     attempts.add([&] {
       print_summary(out, summary, settings, verdict, tracker, reading, stopped_by);
+      print_felt_levels(out, felt, settings.transducers);
       say_files();
     });
     attempts.finish();

@@ -104,13 +104,15 @@ int simulate_command(const SimulateOptionsGiven& given) {
   const std::vector<ObserverRow> rows = observer_rows(hands, given, people);
   print_table(out, rows, people);
   const std::string strength = about_strength(rows, hands);
-  fmt::print(out, "\nIn the paper people had {:.0f} % with am and {:.0f} % with pro-stm.{}\n{}\n",
+  const std::string sensation = about_sensation(hands, given.sound);
+  fmt::print(out,
+             "\nIn the paper people had {:.0f} % with am and {:.0f} % with pro-stm.{}\n{}\n{}\n",
              100.0 * kStudyMethods[0].of_people, 100.0 * kStudyMethods[1].of_people,
              people.empty() ? fmt::format(" The participants' scores, {}/fig4.json, were not "
                                           "found, so likelihoods are missing (--paper-data).",
                                           kPaperData)
                             : std::string(),
-             strength);
+             strength, sensation);
   write_answers(given, rows);
   say_written(out, given.answers);
   write_json(given.json, {{"format", "prostm-simulated-study/1"},
@@ -124,7 +126,8 @@ int simulate_command(const SimulateOptionsGiven& given) {
                           {"noise", given.noise},
                           {"rows", rows_json(rows)},
                           {"people", people_json(people)},
-                          {"words", strength}});
+                          {"words", strength},
+                          {"sensation_words", sensation}});
   say_written(out, given.json);
   return 0;
 }

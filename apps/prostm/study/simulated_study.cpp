@@ -7,7 +7,9 @@
 #include <atomic>
 #include <exception>
 
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/core/worker_pool.hpp"
+#include "prostm/psychophysics/observer.hpp"
 
 namespace prostm::app {
 namespace {
@@ -44,14 +46,21 @@ std::vector<ModelParticipant> pool_of(const Observer& observer, const StudyMetho
   return pool;
 }
 
-/// Mean strength of a scene on all hands [m].
-double strength_of(const std::vector<HandPercepts>& hands, const StudyMethod& method,
-                   std::size_t scene) {
+/// Mean of a strength over all hands and moments of a scene [m].
+double mean_strength(const std::vector<HandPercepts>& hands, const StudyMethod& method,
+                     std::size_t scene, double (*strength)(const StimulusPercept&)) {
   double sum = 0.0;
   for (const HandPercepts& hand : hands) {
-    for (const StimulusPercept& moment : hand[scene].*method.percepts) sum += moment.strength;
+    for (const StimulusPercept& moment : hand[scene].*method.percepts) sum += strength(moment);
   }
   return sum / (kMoments * static_cast<double>(hands.size()));
+}
+
+double of_whole_skin(const StimulusPercept& moment) {
+  return moment.strength;
+}
+double of_strongest_place(const StimulusPercept& moment) {
+  return moment.by_model[static_cast<std::size_t>(PerceptModel::Peak)].strength;
 }
 
 nlohmann::ordered_json shares_json(const std::array<SimulatedShare, 3>& shares) {
@@ -154,14 +163,31 @@ std::string about_strength(const std::vector<ObserverRow>& rows,
       return r.observer == "strength" && r.method == method.name;
     });
     const double right = row->share[2].mean;
-    said.push_back(fmt::format(
-        "{:.1f} % right with {} (four plumes feel {:.2f} times as strong as one)", 100.0 * right,
-        method.name, strength_of(hands, method, 1) / strength_of(hands, method, 0)));
+    said.push_back(
+        fmt::format("{:.1f} % right with {} (four plumes feel {:.2f} times as strong as one)",
+                    100.0 * right, method.name,
+                    mean_strength(hands, method, 1, of_whole_skin) /
+                        mean_strength(hands, method, 0, of_whole_skin)));
     is_cue = is_cue || right > kCue;
   }
   return fmt::format(
       "Strength alone gives {}, guessing 50 %: {}.", fmt::join(said, " and "),
       is_cue ? "the scenes are not equally strong, and strength is a cue" : "strength is no cue");
+}
+
+std::string about_sensation(const std::vector<HandPercepts>& hands, double sound) {
+  std::vector<std::string> said;
+  for (const StudyMethod& method : kStudyMethods) {
+    const auto level = [&](std::size_t scene) {
+      return decibels(mean_strength(hands, method, scene, of_strongest_place), kTouchThreshold);
+    };
+    said.push_back(fmt::format("{:.0f} dB (one plume) and {:.0f} dB (four) with {}", level(0),
+                               level(1), method.name));
+  }
+  return fmt::format(
+      "With {:.0f} Pa rms at intensity 1, the sensation levels of the strongest places are {}; "
+      "these observers have no threshold.",
+      sound, fmt::join(said, ", "));
 }
 
 nlohmann::ordered_json rows_json(const std::vector<ObserverRow>& rows) {

@@ -53,6 +53,10 @@ std::vector<Answer> answers_with(const std::vector<Answer>& answers, const std::
 std::string about_strength(const std::vector<ObserverRow>& rows,
                            const std::vector<HandPercepts>& hands);
 
+/// Returns a sentence on the sensation levels of the scenes. @param sound acoustic pressure of a
+/// focal point at intensity 1 [Pa, rms].
+std::string about_sensation(const std::vector<HandPercepts>& hands, double sound);
+
 nlohmann::ordered_json rows_json(const std::vector<ObserverRow>& rows);
 /// Returns the paper's shares, and those of its participants if their scores are given.
 nlohmann::ordered_json people_json(const std::vector<Answer>& people);

@@ -33,6 +33,9 @@ void read_amplitude(const JsonNode& root, TransducerArray& array) {
   const JsonNode amplitude =
       root.at("amplitude_pa_m", "the rms pressure at full drive on axis × distance in Pa·m");
   array.amplitude = array.amplitude_low = array.amplitude_high = amplitude.number(kLeast, kMost);
+  if (root.has("measured_amplitude_pa_m")) {
+    array.measured_amplitude = root.at("measured_amplitude_pa_m", "").number(kLeast, kMost);
+  }
   if (!root.has("amplitude_interval_pa_m")) return;
   const JsonNode interval = root.at("amplitude_interval_pa_m", "");
   const Vec2 bounds = interval.vec2(kLeast, kMost);
@@ -91,6 +94,9 @@ std::string array_to_json(const TransducerArray& array) {
                    {"directivity", directivity_name(array.directivity)},
                    {"amplitude_pa_m", array.amplitude}};
   document["amplitude_interval_pa_m"] = {array.amplitude_low, array.amplitude_high};
+  if (array.measured_amplitude > 0.0) {
+    document["measured_amplitude_pa_m"] = array.measured_amplitude;
+  }
   document["transducers_mm"] = std::move(positions);
   if (!all_face_z) document["normals"] = std::move(normals);
   return to_text(document);
@@ -101,7 +107,8 @@ TransducerArray array_from_json(std::string_view text, const std::string& file) 
   const JsonNode root(document, file);
   require_format(root, "prostm-array/1");
   root.allow_only({"format", "name", "frequency_hz", "radius_mm", "directivity", "amplitude_pa_m",
-                   "amplitude_interval_pa_m", "transducers_mm", "normals"});
+                   "amplitude_interval_pa_m", "measured_amplitude_pa_m", "transducers_mm",
+                   "normals"});
   TransducerArray array;
   array.name = root.at("name", "the name of the array").text();
   array.frequency = root.at("frequency_hz", "the carrier's frequency in Hz").number(20e3, 100e3);

@@ -7,6 +7,7 @@
 #include "prostm/io/detail/raster_json.hpp"
 #include "prostm/io/plan_file.hpp"
 #include "prostm/io/quantity_json.hpp"
+#include "prostm/io/sensation_json.hpp"
 #include "prostm/io/settings_file.hpp"
 
 namespace prostm {
@@ -79,6 +80,7 @@ Json felt_json(const PhysicalReport& report) {
   if (report.felt == nullptr) return nullptr;
   Json felt = {{"largest_um", 1e6 * report.felt->largest},
                {"intensity_um", 1e6 * report.felt->intensity},
+               {"sensation", sensation_to_json(report.sensation_level, *report.array)},
                {"metrics", metrics_or_null(report.felt_metrics)},
                {"ghosts", nullptr},
                {"strongest_ghost", nullptr},

@@ -23,6 +23,7 @@ struct PhysicalReport {
   const Metrics* envelope_metrics = nullptr;  ///< null without a target
   const Metrics* mean_metrics = nullptr;
   const FeltField* felt = nullptr;        ///< null for loops whose perception is not computed
+  double sensation_level = 0.0;           ///< of `felt` [dB]; NaN without vibration
   const Metrics* felt_metrics = nullptr;  ///< null without a target, too
   const Ghosts* ghosts = nullptr;         ///< null without a target, too
   std::vector<FeltHarmonic> spectrum;     ///< empty unless requested; also empty if `felt` is null

@@ -6,10 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "prostm/core/input_error.hpp"
+#include "prostm/emit/played_plan.hpp"
 #include "prostm/io/detail/raster_json.hpp"
 #include "prostm/io/quantity_json.hpp"
+#include "prostm/io/sensation_json.hpp"
 #include "prostm/io/settings_file.hpp"
-#include "prostm/score/felt_skill.hpp"
 
 namespace prostm {
 namespace {
@@ -159,7 +160,13 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
     document.update(quantities_to_json(*extras.stats));
   }
   if (extras.metrics != nullptr) document["metrics"] = quantities_to_json(*extras.metrics);
-  if (extras.quality != nullptr) write_quality(*extras.quality, document);
+  if (extras.quality != nullptr) {
+    write_quality(*extras.quality, document);
+    if (extras.array != nullptr) {
+      document["sensation"] =
+          sensation_to_json(extras.quality->played.sensation_level, *extras.array);
+    }
+  }
   if (extras.controls != nullptr) {
     document["controls"] = Json::array();
     for (const Control& control : *extras.controls) {

@@ -14,6 +14,7 @@
 namespace prostm {
 
 struct PlayedPlan;
+struct TransducerArray;
 
 /// The share of power of each of a plan's simultaneous focal points.
 struct PowerShare {
@@ -41,6 +42,9 @@ struct PlanFileExtras {
   const PlanStats* stats = nullptr;  ///< written as "stage_us" and the counts if given
   const Metrics* metrics = nullptr;  ///< written as "metrics" if given, without their parameters
   const PlanQuality* quality = nullptr;  ///< written as "metrics" with all parameters, if given
+  /// With `quality`: the level of its percept is written as "sensation", with the interval for this
+  /// array.
+  const TransducerArray* array = nullptr;
   const std::vector<Control>* controls = nullptr;
   const PowerShare* power = nullptr;                   ///< written as "power" if given
   const std::vector<std::string>* warnings = nullptr;  ///< written as "warnings" if given

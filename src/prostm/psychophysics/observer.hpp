@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/core/text/names.hpp"
 #include "prostm/psychophysics/felt_stimulus.hpp"
 
@@ -22,9 +23,6 @@ enum class Readout : std::uint8_t {
 template <>
 inline constexpr std::array<std::string_view, 2> kNames<Readout> = {"template", "category"};
 
-/// Spread of thresholds between people: standard deviation [dB]. Not fitted: no experiment of the
-/// fitted set has it.
-inline constexpr double kThresholdSpread = 4.0;
 /// Free parameters of an observer.
 struct ObserverParameters {
   double threshold = 0.0;  ///< T, strength at the threshold of detection [m, or Pa]

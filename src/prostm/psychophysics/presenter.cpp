@@ -12,9 +12,8 @@ namespace {
 
 using experiments::Palm;
 
-constexpr double kReferenceHeight = 0.2;  // of the calibration [m]
-constexpr double kHighest = 1000.0;       // highest frequency of the percept [Hz]
-constexpr double kLongest = 0.25;         // longest period of the skin's response [s]
+constexpr double kHighest = 1000.0;  // highest frequency of the percept [Hz]
+constexpr double kLongest = 0.25;    // longest period of the skin's response [s]
 constexpr SkinPatch kSweepPatch{20, 72, 2e-3};
 
 /// Returns the place on a way at a share of its length.
@@ -104,16 +103,10 @@ Vibration vibration_of(const SkinMotion& motion, const PressureLoop& loop) {
   return out;
 }
 
-TransducerArray calibrated_usx_array(double level) {
-  TransducerArray array = usx_array();
-  const Medium air;
-  const Wave sound = wave(array, air);
-  double all = 0.0;
-  for (std::size_t n = 0; n < array.position.size(); ++n)
-    all += std::abs(propagate(array, sound, n, Vec3(0.0, 0.0, kReferenceHeight)));
-  const double wanted = 20e-6 * std::pow(10.0, level / 20.0);
-  array.amplitude *= wanted / all;
+TransducerArray at_measured_amplitude(TransducerArray array) {
+  array.amplitude = array.measured_amplitude;
   array.amplitude_low = std::min(array.amplitude_low, array.amplitude);
+  array.amplitude_high = std::max(array.amplitude_high, array.amplitude);
   return array;
 }
 

@@ -14,11 +14,8 @@
 
 namespace prostm {
 
-/// Sound pressure level at the focus of an Ultraleap array at full drive, 0.2 m above it: as
-/// measured [dB re 20 µPa].
-inline constexpr double kMeasuredLevel = 155.0;
-/// Returns usx_array() with the amplitude that gives this level on the axis at 0.2 m.
-TransducerArray calibrated_usx_array(double level = kMeasuredLevel);
+/// Returns an array whose amplitude is the measured one. @pre it has one
+TransducerArray at_measured_amplitude(TransducerArray array);
 
 /// The steady vibration of a patch of skin under a periodic pressure.
 struct Vibration {

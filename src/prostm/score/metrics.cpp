@@ -10,7 +10,7 @@ namespace {
 
 using Member = double Metrics::*;
 
-constexpr std::array<Quantity<Metrics>, 8> kMetrics{{
+constexpr std::array<Quantity<Metrics>, 9> kMetrics{{
     {.name = "rmse",
      .unit = "",
      .help = "Root mean square difference over max p*.",
@@ -60,6 +60,14 @@ constexpr std::array<Quantity<Metrics>, 8> kMetrics{{
      .better = Better::More,
      .optional = true,
      .label = "felt"},
+    {.name = "sensation_level",
+     .unit = "dB",
+     .help = "Strongest place of that percept relative to the threshold of touch; NaN without an "
+             "array.",
+     .value = &Metrics::sensation_level,
+     .better = Better::More,
+     .optional = true,
+     .label = "dB SL"},
 }};
 
 /// Applies `of` to the values of each metric; NaN if any value is NaN.

@@ -27,8 +27,10 @@ struct Metrics {
   double skill_8 = 0;  ///< S_8.5: S_0 after a Gaussian blur of both by 8.5 mm, within the skin
   double overlap = 0;  ///< Σ min(p*, g p̂) / Σ max(p*, g p̂), g of skill_0
   double spill = 0;    ///< share of Σ p̂ on skin where p* < 0.1 max p*
-  /// S_8.5 of the percept of the field emitted by an array, felt_skill(); NaN if not computed.
+  /// S_8.5 of the percept of the field emitted by an array, plan_percept(); NaN if not computed.
   double felt_skill = std::numeric_limits<double>::quiet_NaN();
+  /// Sensation level of that percept [dB], (S21); NaN if not computed.
+  double sensation_level = std::numeric_limits<double>::quiet_NaN();
 };
 template <>
 std::span<const Quantity<Metrics>> quantities<Metrics>();

@@ -76,6 +76,11 @@ export const kStrips: StripSpec[] = [
     ],
   },
   {
+    id: "strength", title: "Strength felt", unit: "dB above the threshold of touch", better: "higher", atLeast: 10, series: [
+      { label: "strongest place", value: of("sensation_level"), colour: kBlue, digits: 0 },
+    ],
+  },
+  {
     id: "error", title: "RMSE", unit: "of the largest target", better: "lower", atLeast: 0.1, series: [
       { label: "RMSE", value: of("rmse"), colour: kOrange, digits: 3 },
     ],

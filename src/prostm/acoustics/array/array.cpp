@@ -26,6 +26,8 @@ void validate_kind(const TransducerArray& array) {
   require_between("amplitude", array.amplitude, kLeast, kMost, "Pa·m");
   require_between("amplitude_low", array.amplitude_low, kLeast, array.amplitude, "Pa·m");
   require_between("amplitude_high", array.amplitude_high, array.amplitude, kMost, "Pa·m");
+  if (array.measured_amplitude == 0.0) return;
+  require_between("measured_amplitude", array.measured_amplitude, kLeast, kMost, "Pa·m");
 }
 
 /// Throws if two transducers are too near. Sorted by x, only neighbours need to be compared.
@@ -65,6 +67,7 @@ TransducerArray usx_array() {
   array.amplitude = 3.4;
   array.amplitude_low = 2.5;
   array.amplitude_high = 8.0;
+  array.measured_amplitude = 1.09624833;  // 155 dB SPL on the axis at 0.2 m, as [S-8] measured
   for (int row = 0; row < kSide; ++row) {
     for (int col = 0; col < kSide; ++col) add_grid_point(array, 10.5e-3, kSide, kSide, col, row);
   }
@@ -149,7 +152,8 @@ TransducerArray join(std::span<const TransducerArray> arrays) {
     require_same("radius", next.radius == first.radius, first, next);
     require_same("amplitude",
                  next.amplitude == first.amplitude && next.amplitude_low == first.amplitude_low &&
-                     next.amplitude_high == first.amplitude_high,
+                     next.amplitude_high == first.amplitude_high &&
+                     next.measured_amplitude == first.measured_amplitude,
                  first, next);
     all.name += " + " + next.name;
     all.position.insert(all.position.end(), next.position.begin(), next.position.end());
@@ -178,6 +182,15 @@ std::complex<double> propagate(const TransducerArray& array, const Wave& wave, s
 std::complex<double> propagate(const TransducerArray& array, const Medium& medium, std::size_t i,
                                const Vec3& p) {
   return propagate(array, wave(array, medium), i, p);
+}
+
+double focus_pressure(const TransducerArray& array, const Medium& medium, const Vec3& p) {
+  const Wave sound = wave(array, medium);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < array.position.size(); ++i) {
+    sum += std::abs(propagate(array, sound, i, p));
+  }
+  return sum;
 }
 
 void focus_phases(const TransducerArray& array, const Medium& medium, const Vec3& focus,

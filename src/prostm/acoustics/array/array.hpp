@@ -28,10 +28,13 @@ struct TransducerArray {
   /// Lowest and highest amplitude in the literature [Pa·m]; both equal `amplitude` if there is only
   /// one source.
   double amplitude_low = 0.0, amplitude_high = 0.0;
+  /// Amplitude that gives the sound level measured at a focus [Pa·m]; 0 if none was measured.
+  double measured_amplitude = 0.0;
 };
 
 /// The Ultraleap STRATOS Explore's layout: 16×16 at 10.5 mm pitch, 40 kHz, x fastest, facing +z.
-/// Amplitude 3.4 Pa·m rms, 2.5 to 8.0 (docs/design/acoustics.md).
+/// Amplitude 3.4 Pa·m rms, 2.5 to 8.0 (docs/design/acoustics.md); 1.09625 Pa·m gives the 155 dB
+/// that were measured at a focus 0.2 m above the array.
 TransducerArray usx_array();
 
 /// One AUTD3: 249 transducers on a grid of 18×14 at 10.16 mm pitch without (x, y) = (1, 1), (2, 1)
@@ -52,7 +55,7 @@ std::span<const ArrayKind> array_kinds();
 /// not one per transducer; a position that is not finite or has a coordinate beyond 10 m; a normal
 /// whose length is not 1 within 1e-9; two transducers within kMinTransducerDistance; a frequency
 /// not in 20 to 100 kHz; a radius not in 0.1 to 50 mm; amplitudes not in 1e-6 to 1e3 Pa·m or not in
-/// the order low ≤ amplitude ≤ high.
+/// the order low ≤ amplitude ≤ high; a measured amplitude that is neither 0 nor in that range.
 void validate(const TransducerArray& array);
 
 /// Returns `array` with its positions and normals moved from its own frame A to D.
@@ -83,6 +86,10 @@ std::complex<double> propagate(const TransducerArray& array, const Wave& wave, s
                                const Vec3& p);
 std::complex<double> propagate(const TransducerArray& array, const Medium& medium, std::size_t i,
                                const Vec3& p);
+
+/// Acoustic pressure [Pa, rms] at p of a focus at p for which all transducers are driven fully, at
+/// the nominal amplitude: the sum of their |pressure|, (A1).
+double focus_pressure(const TransducerArray& array, const Medium& medium, const Vec3& p);
 
 /// Computes the phases [rad] that focus the array on one point, (A3): −k r_i (naive focus).
 /// @pre out.size() == position.size().

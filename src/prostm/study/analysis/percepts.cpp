@@ -12,7 +12,7 @@
 #include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "prostm/psychophysics/observer.hpp"
 #include "prostm/score/felt.hpp"
-#include "prostm/score/felt_skill.hpp"
+#include "prostm/score/plan_percept.hpp"
 
 namespace prostm {
 namespace {

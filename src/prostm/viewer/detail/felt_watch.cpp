@@ -4,23 +4,21 @@
 
 #include <stdexcept>
 
-#include "prostm/score/felt_skill.hpp"
-
 namespace prostm::viewer {
 namespace {
 
 // one plan takes about 0.25 s, so this uses 5 % of a core
 constexpr std::chrono::seconds kPause{5};
 
-double skill_of(const PlanSnapshot& plan, int patch, WorkerPool& pool,
-                const std::stop_token& stop) {
+PlanPercept percept_of(const PlanSnapshot& plan, int patch, WorkerPool& pool,
+                       const std::stop_token& stop) {
   EmitSettings emit = plan.settings->emit;
   emit.full_scale_pressure = plan.full_scale_pressure;
   try {
-    return felt_skill(plan.plan, plan.target, patch, emit, plan.emission_rate,
-                      plan.settings->transducers, pool, [&] { return !stop.stop_requested(); });
+    return plan_percept(plan.plan, plan.target, patch, emit, plan.emission_rate,
+                        plan.settings->transducers, pool, [&] { return !stop.stop_requested(); });
   } catch (const std::invalid_argument&) {
-    return std::numeric_limits<double>::quiet_NaN();  // the array reaches none of its focal points
+    return {};  // the array reaches none of its focal points
   }
 }
 
@@ -55,7 +53,9 @@ void FeltWatch::work(const std::stop_token& stop) {
       plan = std::move(plan_);
       patch = patch_;
     }
-    skill_.store(skill_of(plan, patch, pool, stop), std::memory_order_relaxed);
+    const PlanPercept percept = percept_of(plan, patch, pool, stop);
+    const std::scoped_lock lock(mutex_);
+    percept_ = percept;
   }
 }
 

@@ -1,15 +1,14 @@
 #pragma once
-/// Regularly evaluates how well the felt stimulus renders its target, while there are viewers. Uses
-/// a thread of the lowest priority.
+/// Regularly evaluates how well and how strongly the stimulus is felt, while there are viewers.
+/// Uses a thread of the lowest priority.
 
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <limits>
 #include <mutex>
 #include <thread>
 
 #include "prostm/pipeline/snapshot.hpp"
+#include "prostm/score/plan_percept.hpp"
 
 namespace prostm::viewer {
 
@@ -20,19 +19,22 @@ class FeltWatch {
   /// Copies the plan for evaluation if the last copy is old enough; otherwise does nothing. @param
   /// patch the patch to evaluate. @pre plan.planned.
   void offer(const PlanSnapshot& plan, int patch);
-  /// felt_skill() of the last evaluated plan; NaN before the first.
-  double skill() const { return skill_.load(std::memory_order_relaxed); }
+  /// plan_percept() of the last evaluated plan; NaN before the first.
+  PlanPercept percept() const {
+    const std::scoped_lock lock(mutex_);
+    return percept_;
+  }
 
  private:
   void work(const std::stop_token& stop);
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable_any wake_;
   PlanSnapshot plan_;  // guarded by the mutex, until the thread takes it
   int patch_ = 0;
   bool waiting_ = false;
+  PlanPercept percept_;  // guarded by the mutex
   std::chrono::steady_clock::time_point next_{};
-  std::atomic<double> skill_{std::numeric_limits<double>::quiet_NaN()};
   std::jthread thread_;
 };
 

@@ -213,7 +213,9 @@ void FrameMaker::fill_scores(ViewFrame& frame) const {
   const PlanSnapshot& plan = snapshots_.plan();
   const bool scored = plan.planned;
   Metrics metrics = rendered_.metrics;
-  metrics.felt_skill = felt_.skill();
+  const PlanPercept percept = felt_.percept();
+  metrics.felt_skill = percept.skill;
+  metrics.sensation_level = percept.sensation_level;
   const auto all = quantities<Metrics>();
   const auto places = view_metric_places();
   for (std::size_t i = 0; i < all.size(); ++i)

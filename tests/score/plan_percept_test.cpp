@@ -1,4 +1,4 @@
-#include "prostm/score/felt_skill.hpp"
+#include "prostm/score/plan_percept.hpp"
 
 #include <gtest/gtest.h>
 
@@ -30,12 +30,16 @@ struct Planned {
   Plan plan;
 };
 
-double felt(const Planned& planned, const Plan& plan, const EmitSettings& settings = {}) {
+PlanPercept percept(const Planned& planned, const Plan& plan, const EmitSettings& settings = {},
+                    const TransducerArray& array = usx_array()) {
   WorkerPool pool(1);
-  return felt_skill(plan, planned.frame, 0, settings, kRate, usx_array(), pool);
+  return plan_percept(plan, planned.frame, 0, settings, kRate, array, pool);
+}
+double felt(const Planned& planned, const Plan& plan, const EmitSettings& settings = {}) {
+  return percept(planned, plan, settings).skill;
 }
 
-TEST(FeltSkill, MatchesThePerceptOfTheLoop) {
+TEST(PlanPercept, MatchesThePerceptOfTheLoop) {
   const Planned planned;
   const TargetField& target = planned.frame.patches[0];
   const LoopSamples loop = plan_loop(planned.plan, planned.frame, {}, kRate);
@@ -44,20 +48,39 @@ TEST(FeltSkill, MatchesThePerceptOfTheLoop) {
   loop_drives(
       usx_array(), air, loop, {}, [](int, int) { return true; }, drives);
   WorkerPool pool(2);
-  const FeltField percept =
+  const FeltField felt =
       FeelingSkin(target).feel(PackedArray(usx_array(), air), air, target, loop, drives, pool);
-  const double skill = score_physical(target, percept.percept, 0.0).skill_8;
-  EXPECT_EQ(felt(planned, planned.plan), skill);
+  const double skill = score_physical(target, felt.percept, 0.0).skill_8;
+  const PlanPercept of_plan = percept(planned, planned.plan);
+  EXPECT_EQ(of_plan.skill, skill);
+  EXPECT_EQ(of_plan.sensation_level, loop_sensation_level(felt, loop, usx_array()));
   EXPECT_GT(skill, 0.3);
   EXPECT_LE(skill, 1.0);
 }
 
-TEST(FeltSkill, DoesNotDependOnTheUnitOfTheTarget) {
+TEST(PlanPercept, IsWeakerWhereIntensitiesAreLow) {
+  const Planned planned;
+  const double strong = percept(planned, planned.plan).sensation_level;
+  double largest = 0.0;
+  for (const FocalPath& path : planned.plan.paths)
+    largest = std::max(largest, *std::max_element(path.pressure.begin(), path.pressure.end()));
+  EmitSettings quiet;
+  for (const double share : {0.25, 0.0625}) {  // of the pressure at intensity 1
+    quiet.full_scale_pressure = largest / share;
+    EXPECT_NEAR(percept(planned, planned.plan, quiet).sensation_level,
+                percept(planned, planned.plan).sensation_level + 20.0 * std::log10(share), 2.5);
+  }
+  TransducerArray nominal = usx_array();
+  nominal.measured_amplitude = 0.0;
+  EXPECT_NEAR(percept(planned, planned.plan, {}, nominal).sensation_level, strong + 19.66, 0.01);
+}
+
+TEST(PlanPercept, DoesNotDependOnTheUnitOfTheTarget) {
   const Planned one, thousand(1000.0);
   EXPECT_NEAR(felt(one, one.plan), felt(thousand, thousand.plan), 0.02);
 }
 
-TEST(FeltSkill, IsUnknownWithoutPressureOrWithoutAPlan) {
+TEST(PlanPercept, IsUnknownWithoutPressureOrWithoutAPlan) {
   Planned planned;
   EXPECT_TRUE(std::isnan(felt(planned, {})));
   std::fill(planned.frame.patches[0].pressure.begin(), planned.frame.patches[0].pressure.end(),
@@ -65,18 +88,19 @@ TEST(FeltSkill, IsUnknownWithoutPressureOrWithoutAPlan) {
   EXPECT_TRUE(std::isnan(felt(planned, planned.plan)));
 }
 
-TEST(FeltSkill, IsUnknownIfStopped) {
+TEST(PlanPercept, IsUnknownIfStopped) {
   const Planned planned;
   WorkerPool pool(1);
   const auto skill = [&](bool go_on) {
-    return felt_skill(planned.plan, planned.frame, 0, {}, kRate, usx_array(), pool,
-                      [&] { return go_on; });
+    return plan_percept(planned.plan, planned.frame, 0, {}, kRate, usx_array(), pool,
+                        [&] { return go_on; })
+        .skill;
   };
   EXPECT_FALSE(std::isnan(skill(true)));
   EXPECT_TRUE(std::isnan(skill(false)));
 }
 
-TEST(FeltSkill, IsUnknownForAPlanThatNoArrayCanPlay) {
+TEST(PlanPercept, IsUnknownForAPlanThatNoArrayCanPlay) {
   Planned planned;
   EmitSettings unheard;
   unheard.full_scale_pressure = 1e9;
@@ -87,7 +111,7 @@ TEST(FeltSkill, IsUnknownForAPlanThatNoArrayCanPlay) {
   EXPECT_TRUE(std::isnan(felt(planned, planned.plan)));
 }
 
-TEST(FeltSkill, IsUnknownIfALapTakesTooLong) {
+TEST(PlanPercept, IsUnknownIfALapTakesTooLong) {
   for (const double speed : {0.5, 0.05}) {  // laps below and above the limit of a loop
     Planned planned;
     for (FocalPath& path : planned.plan.paths) path.speed = speed;

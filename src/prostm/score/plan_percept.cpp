@@ -1,11 +1,10 @@
-#include "prostm/score/felt_skill.hpp"
+#include "prostm/score/plan_percept.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/emit/compensation.hpp"
-#include "prostm/score/felt.hpp"
 
 namespace prostm {
 
@@ -50,24 +49,33 @@ LoopSamples plan_loop(const Plan& plan, const TargetFrame& frame, const EmitSett
   return loop_of(on_skin, settings, sample_rate);
 }
 
-double felt_skill(const Plan& plan, const TargetFrame& frame, int patch,
-                  const EmitSettings& settings, double sample_rate, const TransducerArray& array,
-                  WorkerPool& pool, const std::function<bool()>& go_on) {
+double loop_sensation_level(const FeltField& felt, const LoopSamples& loop,
+                            const TransducerArray& array) {
+  double strongest = 0.0;
+  for (const FocusSample& sample : loop.sample)
+    strongest = std::max(strongest, static_cast<double>(sample.intensity));
+  return sensation_level(strongest * strongest * felt.largest, array);
+}
+
+PlanPercept plan_percept(const Plan& plan, const TargetFrame& frame, int patch,
+                         const EmitSettings& settings, double sample_rate,
+                         const TransducerArray& array, WorkerPool& pool,
+                         const std::function<bool()>& go_on) {
   const TargetField& target = frame.patches[static_cast<std::size_t>(patch)];
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const LiftedPlan on_skin = lifted(plan, frame, settings);
-  if (!(largest_pressure(on_skin) > 0.0) || !(max_pressure(target) > 0.0)) return kUnknown;
+  if (!(largest_pressure(on_skin) > 0.0) || !(max_pressure(target) > 0.0)) return {};
   require_loop(plan.loop);
-  if (longest_lap(on_skin, sample_rate) > kLongestFelt) return kUnknown;
+  if (longest_lap(on_skin, sample_rate) > kLongestFelt) return {};
   const LoopSamples loop = loop_of(on_skin, settings, sample_rate);
-  if (is_silent(loop) || !is_felt(target, loop)) return kUnknown;
+  if (is_silent(loop) || !is_felt(target, loop)) return {};
   const Medium air;
   LoopDriveResult drives;
   const auto progress = [&](int, int) { return go_on(); };
-  if (!loop_drives(array, air, loop, {}, progress, drives)) return kUnknown;
+  if (!loop_drives(array, air, loop, {}, progress, drives)) return {};
   const FeltField felt =
       FeelingSkin(target).feel(PackedArray(array, air), air, target, loop, drives, pool);
-  return score_physical(target, felt.percept, 0.0).skill_8;
+  return {score_physical(target, felt.percept, 0.0).skill_8,
+          loop_sensation_level(felt, loop, array)};
 }
 
 }  // namespace prostm
