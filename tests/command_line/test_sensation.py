@@ -48,6 +48,7 @@ def test_the_field_of_a_plan_has_the_same_level(prostm, tmp_path, planned):
     assert level_in(text)[0] == level_in(planned[0])[0] and "at the nominal amplitude" in text
 
 
+@pytest.mark.long
 def test_levels_follow_the_intensity(prostm, tmp_path, planned):
     def level(*options):
         out = prostm("field", "plan.json", *options, "--json", "-").stdout
@@ -59,6 +60,7 @@ def test_levels_follow_the_intensity(prostm, tmp_path, planned):
     assert level("--full-scale-pa", "300") == pytest.approx(level("--full-scale-pa", "600") - 12.04, abs=0.1)
 
 
+@pytest.mark.long
 def test_an_array_without_a_measurement_is_taken_as_nominal(prostm, tmp_path, planned):
     out = json.loads(prostm("solve", ROOT / "data" / "foci.json", "--json", "-").stdout)
     array = {"format": "prostm-array/1", "name": "mine", "frequency_hz": 40000, "radius_mm": 4.5,
@@ -73,9 +75,10 @@ def test_an_array_without_a_measurement_is_taken_as_nominal(prostm, tmp_path, pl
     assert levels["measured"] == pytest.approx(levels["nominal"] - 12.04, abs=0.01)
 
 
+@pytest.mark.long
 def test_a_run_reports_the_median_of_its_plans(prostm, tmp_path):
-    def run(scene):
-        text = prostm("run", "--hand", "scripted", "--grid", "32", "--preset", "fast", "--seconds", "2", "--stepped",
+    def run(scene, seconds="6"):
+        text = prostm("run", "--hand", "scripted", "--grid", "32", "--preset", "fast", "--seconds", seconds, "--stepped",
                       "--scene", scene, "--json", "run.json").stdout
         return text, json.loads((tmp_path / "run.json").read_text())["sensation"]
 
@@ -83,5 +86,6 @@ def test_a_run_reports_the_median_of_its_plans(prostm, tmp_path):
     assert 1 <= plumes["plans"] <= 3 and plumes["amplitude"] == "measured"
     assert plumes["lowest_db"] <= plumes["level_db"] <= plumes["highest_db"]
     assert level_in(text)[0] == pytest.approx(plumes["level_db"], abs=0.5)
+    assert run("four-plumes", "3")[1] is None  # too short
     # in still air only the hand's own movement presses
     assert run("still-air")[1]["level_db"] < plumes["level_db"] - 6

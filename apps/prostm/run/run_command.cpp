@@ -27,6 +27,7 @@ namespace prostm::app {
 namespace {
 
 constexpr double kTrackerLook = 0.1;  // [s]
+constexpr double kLeastFelt = 5.0;    // shortest run whose percept is computed [s]
 
 /// Records, stores the instant for the picture, and stops the run on a signal or if the page's
 /// server fails.
@@ -206,7 +207,8 @@ struct Ending {
     json["tracker"] = tracker_json(tracker);
     json["hand_file"] = reading_json(reading);
     json["array"] = pipeline.device().description();
-    const std::optional<FeltLevels> felt = observer.felt().levels(settings);
+    std::optional<FeltLevels> felt;
+    if (summary.seconds >= kLeastFelt) felt = observer.felt().levels(settings);
     json["sensation"] = felt_levels_json(felt, settings.transducers);
     json["settings"] = settings_to_json(settings_groups(settings));
     Attempts attempts;
