@@ -189,6 +189,7 @@ struct ExperimentsOptionsGiven {
   std::string model, readout;      ///< empty: all
   std::string fit;                 ///< file for the fitted parameters; empty: predict
   bool leave_one_out = false;      ///< fit without each paper in turn
+  bool variations = false;         ///< the paper's study in variations
   std::string json, figure;
 };
 

@@ -102,14 +102,42 @@ TEST(Percepts, AHandFeelsTheSameInARepeatedScene) {
   const ModelHand hand = random_hand(5);
   int calls = 0;
   const auto twice = [&] { return ++calls % 2 != 0; };
-  const ScenePercepts first = feel_scene(settings, "four-plumes", hand, kStudySound, 4, twice),
-                      again = feel_scene(settings, "four-plumes", hand, kStudySound, 4, twice);
+  const ScenePercepts first = feel_scene(settings, "four-plumes", hand, kStudySound, 4, {}, twice),
+                      again = feel_scene(settings, "four-plumes", hand, kStudySound, 4, {}, twice);
   ASSERT_EQ(first.am.size(), 2U);  // as the callback requested
   ASSERT_EQ(first.pro_stm.size(), 2U);
   EXPECT_GT(first.am[0].strength, 0.0);
   EXPECT_EQ(first.am[1].skin, again.am[1].skin);
   EXPECT_EQ(first.pro_stm[1].field, again.pro_stm[1].field);
   EXPECT_NE(first.am[0].skin, first.pro_stm[0].skin);
+}
+
+TEST(Percepts, AVariationChangesWhatItNames) {
+  PipelineSettings settings;
+  settings.fluid.cells = 32;
+  const ModelHand hand = random_hand(5);
+  const auto feel = [&](const SceneVariation& variation) {
+    return feel_scene(settings, "four-plumes", hand, kStudySound, 1, variation,
+                      [] { return true; });
+  };
+  const ScenePercepts usual = feel({});
+  const StimulusPercept &am = usual.am[0], &pro_stm = usual.pro_stm[0];
+
+  // another place of the hand: the stimulus is as strong, and elsewhere
+  const ScenePercepts placed = feel({.place = 0.01, .turn = 0.17});
+  EXPECT_EQ(placed.am[0].strength, am.strength);
+  EXPECT_EQ(placed.pro_stm[0].strength, pro_stm.strength);
+  EXPECT_NE(placed.am[0].skin, am.skin);
+  EXPECT_NE(placed.pro_stm[0].skin, pro_stm.skin);
+
+  const ScenePercepts opposed = feel({.opposed_foci = true});
+  EXPECT_NE(opposed.am[0].skin, am.skin);
+  EXPECT_EQ(opposed.pro_stm[0].skin, pro_stm.skin);
+
+  const ScenePercepts ends = feel({.edges = SkinEdges::Reflecting});
+  EXPECT_NE(ends.am[0].skin, am.skin);
+  EXPECT_EQ(ends.am[0].field, am.field);
+  EXPECT_NEAR(ends.am[0].strength / am.strength, 1.0, 0.5);
 }
 
 TEST(Percepts, HandsDifferWithinBounds) {

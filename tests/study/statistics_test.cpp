@@ -209,6 +209,21 @@ TEST(Statistics, RandomSplitsApproximateAllSplits) {
   EXPECT_NEAR(signs.p, paired_t(pairs_a, pairs_b)->p, 0.02);
 }
 
+TEST(Statistics, ChanceOfALeadFollowsFromTheCounts) {
+  // one answer of one person: the second is right and the first is not
+  EXPECT_NEAR(chance_of_lead({1, 1, 0.7, 0.3}, 1), 0.7 * 0.3, 1e-12);
+  // two answers that always agree
+  EXPECT_NEAR(chance_of_lead({1, 2, 0.5, 0.999999}, 2), 0.25, 1e-5);
+  // independent answers: those of one person are those of many
+  EXPECT_NEAR(chance_of_lead({8, 16, 0.684, 1e-7}, 19), chance_of_lead({128, 1, 0.684, 0.5}, 19),
+              1e-6);
+  EXPECT_LT(2.0 * chance_of_lead({4, 10, 0.6, 0.2}, 1), 1.0);  // and ties have the rest
+  // computed apart, in Python
+  const std::pair<double, double> computed[] = {{0.05, 0.03002}, {0.10, 0.05794}, {0.15, 0.08409}};
+  for (const auto& [correlation, chance] : computed)
+    EXPECT_NEAR(chance_of_lead({8, 16, 175.0 / 256.0, correlation}, 19), chance, 1e-5);
+}
+
 TEST(Statistics, PowerGrowsWithParticipantsAndEffect) {
   const test::WithoutTraps in_boost;
   for (const Groups groups : {Groups::Between, Groups::Within}) {

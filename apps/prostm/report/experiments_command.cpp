@@ -11,6 +11,7 @@
 #include "prostm/core/text/nearest_name.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/psychophysics/fit.hpp"
+#include "report/reversal.hpp"
 #include "report/study_predictions.hpp"
 
 namespace prostm::app {
@@ -305,6 +306,23 @@ int leave_one_out(const ExperimentsOptionsGiven& options, Laboratory& laboratory
   return 0;
 }
 
+/// Simulates the paper's study in variations.
+int vary(const ExperimentsOptionsGiven& options, const std::function<bool()>& go_on,
+         Progress& progress) {
+  std::FILE* out = prose(options.json);
+  std::vector<FittedObserver> observers;
+  const Observers chosen = chosen_observers(options);
+  for (const FittedObserver& of : frozen_observers()) {
+    if (std::ranges::find(chosen, std::pair(of.model, of.readout)) != chosen.end())
+      observers.push_back(of);
+  }
+  progress.clear();
+  const Json rows = print_reversal(out, observers, kHands, go_on);
+  write_json(options.json, Json{{"variations", rows}});
+  say_written(out, options.json);
+  return 0;
+}
+
 int fit(const ExperimentsOptionsGiven& options, Laboratory& laboratory, Progress& progress) {
   const Chosen experiments = fitted_experiments("");
   std::vector<FittedObserver> fitted;
@@ -331,13 +349,15 @@ int experiments_command(const ExperimentsOptionsGiven& options) {
   Laboratory laboratory(SkinSettings{}, at_measured_amplitude(usx_array()), [&] {
     if (interrupt.requested()) throw StudyStopped{};
   });
-  StudyPredictions study(kHands, [&] { return !interrupt.requested(); });
+  const auto go_on = [&] { return !interrupt.requested(); };
+  StudyPredictions study(kHands, go_on);
   laboratory.simulate_with([&](const Observer& observer, const std::string& quantity) {
     return std::optional(study.of(observer).at(quantity));
   });
   try {
     if (!options.fit.empty()) return fit(options, laboratory, progress);
     if (options.leave_one_out) return leave_one_out(options, laboratory, progress);
+    if (options.variations) return vary(options, go_on, progress);
     const std::vector<Column> columns = predicted_columns(laboratory, experiments, chosen);
     progress.clear();
     print_cells(out, columns);

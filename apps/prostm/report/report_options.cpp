@@ -54,12 +54,22 @@ void add_experiments(Command app, Work& work) {
           .excludes(names)
           .excludes(set)
           .excludes(fit);
+  const Option variations =
+      command
+          .add_flag("--variations", o->variations,
+                    "simulate the paper's study in variations that could explain its result; half "
+                    "an hour")
+          .excludes(names)
+          .excludes(set)
+          .excludes(fit)
+          .excludes(without);
   add_json(command, o->files, o->json);
   command.option("--json").excludes(fit);
   add_output(command, o->files, "--figure", o->figure, check_figure,
              "draw published and predicted numbers, a chart for each experiment")
       .excludes(fit)
-      .excludes(without);
+      .excludes(without)
+      .excludes(variations);
   command.footer("Example:\n  prostm experiments howard-2023 --model peak");
   set_work(command, work, o->files, [o] { return experiments_command(*o); });
 }

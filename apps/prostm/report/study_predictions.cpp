@@ -31,8 +31,9 @@ double spread_of(const std::vector<ModelParticipant>& pool, const SimulateOption
 
 }  // namespace
 
-StudyPredictions::StudyPredictions(int hands, std::function<bool()> go_on)
-    : go_on_(std::move(go_on)) {
+StudyPredictions::StudyPredictions(int hands, std::function<bool()> go_on,
+                                   const StudyVariation& variation)
+    : go_on_(std::move(go_on)), variation_(variation) {
   given_.hands = hands;
   // intensity 1 is a focus at full drive
   const TransducerArray array = at_measured_amplitude(usx_array());
@@ -46,19 +47,25 @@ void StudyPredictions::feel() {
   settings.fluid.cells = given_.grid;
   settings.threads = 1;
   settings.transducers = at_measured_amplitude(usx_array());
-  hands_ = feel_hands(given_, settings, [&](int, int) { return go_on_(); });
+  if (variation_.apply != nullptr) variation_.apply(settings);
+  hands_ = feel_hands(
+      given_, settings, [&](int, int) { return go_on_(); }, variation_.scene);
   if (!go_on_()) throw StudyStopped{};
 }
 
 std::vector<ModelParticipant> StudyPredictions::pool(const Observer& observer, std::size_t method) {
   std::vector<ModelParticipant> out;
+  ObserverParameters parameters = observer.parameters();
+  if (kStudyMethods[method].percepts == &ScenePercepts::am)
+    parameters.threshold *= std::pow(10.0, variation_.adaptation_db / 20.0);
+  const Observer adapted(observer.model(), observer.readout(), parameters);
   for (const HandPercepts& hand : hands_) {
     std::array<std::vector<ModelPercept>, 2> felt;
     for (std::size_t s = 0; s < felt.size(); ++s) {
       for (const StimulusPercept& moment : hand[s].*kStudyMethods[method].percepts)
         felt[s].push_back(moment.by_model[static_cast<std::size_t>(observer.model())]);
     }
-    for (ModelParticipant& who : observe_as(observer, felt, kObserverLapse))
+    for (ModelParticipant& who : observe_as(adapted, felt, kObserverLapse, variation_.in_trial))
       out.push_back(std::move(who));
   }
   return out;

@@ -18,12 +18,22 @@ struct StudyStopped {};
 /// Quantities of the paper's study by name, as in kStudyQuantities.
 using StudyQuantities = std::map<std::string, double>;
 
+/// A variation of the simulated study, to test an explanation of the paper's result.
+struct StudyVariation {
+  const char* name = "as usual";
+  const char* change = "nothing";  ///< in words
+  void (*apply)(PipelineSettings& settings) = nullptr;
+  SceneVariation scene = {};
+  double adaptation_db = 0.0;            ///< by which AM's threshold is raised
+  std::size_t in_trial = kTrialMoments;  ///< moments of a trial
+};
+
 /// Simulates the paper's study: its scenes with both methods on simulated hands, with the
 /// calibrated array at full drive.
 class StudyPredictions {
  public:
   /// @param hands number of simulated hands. @param go_on called repeatedly; returns false to stop.
-  StudyPredictions(int hands, std::function<bool()> go_on);
+  StudyPredictions(int hands, std::function<bool()> go_on, const StudyVariation& variation = {});
 
   /// Returns all quantities for an observer. The first call computes the percepts, which takes a
   /// minute.
@@ -37,6 +47,7 @@ class StudyPredictions {
 
   SimulateOptionsGiven given_;
   std::function<bool()> go_on_;
+  StudyVariation variation_;
   std::vector<HandPercepts> hands_;
   std::map<std::string, StudyQuantities> known_;
 };

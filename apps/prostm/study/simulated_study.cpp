@@ -88,7 +88,8 @@ ObserverRow row_of(const std::string& observer, const std::string& method,
 
 std::vector<HandPercepts> feel_hands(const SimulateOptionsGiven& given,
                                      const PipelineSettings& settings,
-                                     const std::function<bool(int done, int all)>& go_on) {
+                                     const std::function<bool(int done, int all)>& go_on,
+                                     const SceneVariation& variation) {
   std::vector<HandPercepts> out;
   std::atomic<int> done{0};
   std::atomic<bool> ended{false};
@@ -105,7 +106,8 @@ std::vector<HandPercepts> feel_hands(const SimulateOptionsGiven& given,
     pool.run(2, [&](int scene) {
       const auto s = static_cast<std::size_t>(scene);
       try {
-        hand[s] = feel_scene(settings, kStudyScenes[s], of, given.sound, kMoments, count);
+        hand[s] =
+            feel_scene(settings, kStudyScenes[s], of, given.sound, kMoments, variation, count);
       } catch (...) {
         failure[s] = std::current_exception();
       }

@@ -31,7 +31,8 @@ using HandPercepts = std::array<ScenePercepts, 2>;  ///< of each of kStudyScenes
 /// if stopped.
 std::vector<HandPercepts> feel_hands(const SimulateOptionsGiven& given,
                                      const PipelineSettings& settings,
-                                     const std::function<bool(int done, int all)>& go_on);
+                                     const std::function<bool(int done, int all)>& go_on,
+                                     const SceneVariation& variation = {});
 
 /// One observer with one method.
 struct ObserverRow {

@@ -67,14 +67,15 @@ Percept mean_of(std::span<const Percept> all) {
 struct SplitScenes {
   std::array<Percept, 2> known;
   FeltScenes trials;
+  std::size_t in_trial;
 };
 
-SplitScenes split(const FeltScenes& felt) {
-  SplitScenes out;
+SplitScenes split(const FeltScenes& felt, std::size_t in_trial) {
+  SplitScenes out{{}, {}, in_trial};
   for (std::size_t s = 0; s < felt.size(); ++s) {
-    if (felt[s].size() < 2 * kTrialMoments)
+    if (felt[s].size() < 2 * in_trial)
       throw std::invalid_argument(fmt::format("{} moments of {} must be at least {}",
-                                              felt[s].size(), kStudyScenes[s], 2 * kTrialMoments));
+                                              felt[s].size(), kStudyScenes[s], 2 * in_trial));
     std::vector<Percept> training;
     for (std::size_t i = 0; i < felt[s].size(); ++i)
       (i % 2 == 0 ? training : out.trials[s]).push_back(felt[s][i]);
@@ -89,17 +90,18 @@ template <class Evidence>
 void add_trials(const SplitScenes& scenes, double lapse, ModelParticipant& out,
                 const Evidence& evidence) {
   for (std::size_t s = 0; s < scenes.trials.size(); ++s) {
-    for (std::size_t i = 0; i + kTrialMoments <= scenes.trials[s].size(); ++i) {
+    for (std::size_t i = 0; i + scenes.in_trial <= scenes.trials[s].size(); ++i) {
       const double for_second =
-          evidence(mean_of(std::span(scenes.trials[s]).subspan(i, kTrialMoments)));
+          evidence(mean_of(std::span(scenes.trials[s]).subspan(i, scenes.in_trial)));
       out.right[s].push_back(chance_of_right(s == 1 ? for_second : -for_second, lapse));
     }
   }
 }
 
 /// Simulates an observer of one number with noise of this standard deviation.
-ModelParticipant observe_number(const FeltScenes& felt, double noise, double lapse) {
-  const SplitScenes scenes = split(felt);
+ModelParticipant observe_number(const FeltScenes& felt, double noise, double lapse,
+                                std::size_t in_trial) {
+  const SplitScenes scenes = split(felt, in_trial);
   const double first = scenes.known[0].front(), second = scenes.known[1].front();
   ModelParticipant out;
   out.d_prime = std::abs(second - first) / noise;
@@ -117,8 +119,9 @@ double ModelParticipant::mean_right(std::size_t scene) const {
   return std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
 }
 
-ModelParticipant observe(const FeltScenes& felt, const ObserverNoise& noise, double lapse) {
-  const SplitScenes scenes = split(felt);
+ModelParticipant observe(const FeltScenes& felt, const ObserverNoise& noise, double lapse,
+                         std::size_t in_trial) {
+  const SplitScenes scenes = split(felt, in_trial);
   const TemplateObserver observer(scenes.known[0], scenes.known[1], noise);
   ModelParticipant out;
   out.d_prime = observer.d_prime();
@@ -128,7 +131,7 @@ ModelParticipant observe(const FeltScenes& felt, const ObserverNoise& noise, dou
 
 std::vector<ModelParticipant> observe_as(const Observer& observer,
                                          const std::array<std::vector<ModelPercept>, 2>& felt,
-                                         double lapse) {
+                                         double lapse, std::size_t in_trial) {
   FeltScenes numbers;
   double strength = 0.0;
   for (std::size_t s = 0; s < felt.size(); ++s) {
@@ -147,8 +150,8 @@ std::vector<ModelParticipant> observe_as(const Observer& observer,
     const double weak = strength > 0.0 ? own / strength : 0.0;
     const double noise = observer.parameters().noise * std::hypot(1.0, weak);
     out.push_back(observer.readout() == Readout::Template
-                      ? observe(numbers, {noise, kStrengthNoise}, lapse)
-                      : observe_number(numbers, noise, lapse));
+                      ? observe(numbers, {noise, kStrengthNoise}, lapse, in_trial)
+                      : observe_number(numbers, noise, lapse, in_trial));
   }
   return out;
 }

@@ -34,10 +34,11 @@ using FeltScenes = std::array<std::vector<Percept>, 2>;
 /// Number of moments that an observer feels in a trial.
 inline constexpr std::size_t kTrialMoments = 3;
 /// Simulates an observer. Its templates are the means of every second moment. Each run of
-/// kTrialMoments of the other moments is a trial, in which it feels their mean. Training and trial
+/// `in_trial` of the other moments is a trial, in which it feels their mean. Training and trial
 /// moments alternate, so that slow drifts affect both equally.
-/// @throws std::invalid_argument: fewer than 2 kTrialMoments moments; or as TemplateObserver.
-ModelParticipant observe(const FeltScenes& felt, const ObserverNoise& noise, double lapse);
+/// @throws std::invalid_argument: fewer than 2 in_trial moments; or as TemplateObserver.
+ModelParticipant observe(const FeltScenes& felt, const ObserverNoise& noise, double lapse,
+                         std::size_t in_trial = kTrialMoments);
 
 /// The same for percepts of any model: for each hand, participants of several thresholds, which
 /// spread by kThresholdSpread about the observer's. A template observer has its places as above; a
@@ -45,7 +46,7 @@ ModelParticipant observe(const FeltScenes& felt, const ObserverNoise& noise, dou
 /// Without a threshold, 0, all of a hand are alike. @param felt moments of both scenes.
 std::vector<ModelParticipant> observe_as(const Observer& observer,
                                          const std::array<std::vector<ModelPercept>, 2>& felt,
-                                         double lapse);
+                                         double lapse, std::size_t in_trial = kTrialMoments);
 
 struct StudyShape {
   int participants = 8;  ///< participants with each method

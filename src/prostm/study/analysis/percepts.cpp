@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "prostm/acoustics/skin/bounded_skin.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
@@ -84,6 +86,34 @@ ModelPercept model_percept(PerceptModel model, const Vibration& vibration, const
   return out;
 }
 
+/// Returns the response of the nominal skin to a loop.
+std::unique_ptr<SkinMotion> respond(const TargetField& raster, const PressureLoop& loop,
+                                    SkinEdges edges) {
+  const SkinModel model{SkinSettings{}};
+  const SkinPatch patch{raster.rows, raster.cols, raster.cell};
+  const auto responding = [&](auto skin) -> std::unique_ptr<SkinMotion> {
+    skin->prepare(loop.period, loop.samples);
+    skin->respond(loop);
+    return skin;
+  };
+  if (edges == SkinEdges::None) return responding(std::make_unique<SkinResponse>(model, patch));
+  return responding(std::make_unique<BoundedSkin>(model, patch, raster.skin));
+}
+
+/// Returns a palm joint displaced in the hand's own plane.
+Pose displaced(const Pose& X_DH, const SceneVariation& variation, Random& random) {
+  Pose shift = Pose::Identity();
+  shift.translation() =
+      Vec3(variation.place * random.normal(), 0.0, variation.place * random.normal());
+  shift.rotate(Eigen::AngleAxisd(variation.turn * random.normal(), Vec3::UnitY()));
+  return X_DH * shift;
+}
+
+/// Modulates every second focus half a period late.
+void oppose(Plan& plan) {
+  for (std::size_t i = 1; i < plan.foci.size(); i += 2) plan.foci[i].phase = 0.5;
+}
+
 bool is_silent(const LoopSamples& loop) {
   return std::ranges::all_of(loop.sample,
                              [](const FocusSample& sample) { return sample.intensity == 0.0F; });
@@ -116,10 +146,12 @@ Percept HandPlaces::of(std::span<const double> map) const {
   return out;
 }
 
-StimulusFeeler::StimulusFeeler(const PipelineSettings& settings, double full_scale, double sound)
+StimulusFeeler::StimulusFeeler(const PipelineSettings& settings, double full_scale, double sound,
+                               SkinEdges edges)
     : settings_(settings),
       emit_(emit_settings(settings, full_scale)),
       sound_(sound),
+      edges_(edges),
       packed_(settings.transducers, air_),
       pool_(settings.threads) {}
 
@@ -141,13 +173,12 @@ StimulusPercept StimulusFeeler::feel(const Plan& plan, const TargetFrame& target
   LoopDriveResult drives;
   loop_drives(settings_.transducers, air_, loop, drive, go_on, drives);
   const std::vector<double> pressure = raster_pressure(packed_, air_, raster, loop, drives, pool_);
-  const double period = loop.samples / loop.sample_rate;
-  const int parts = felt_parts(loop);
-  FeelingSkin skin(raster);
-  const FeltField felt = skin.feel(raster, period, parts, pressure);
+  const PressureLoop pressed{loop.samples / loop.sample_rate, felt_parts(loop), pressure};
+  const std::unique_ptr<SkinMotion> motion = respond(raster, pressed, edges_);
+  const FeltField felt = felt_field(raster, *motion);
   out.skin = hand.of(felt.percept);
   out.strength = felt.intensity;
-  const Vibration vibration = vibration_of(skin.motion(), {period, parts, pressure});
+  const Vibration vibration = vibration_of(*motion, pressed);
   for (std::size_t m = 0; m < kPerceptModels; ++m)
     out.by_model[m] = model_percept(static_cast<PerceptModel>(m), vibration, hand);
   return out;
@@ -163,13 +194,14 @@ ModelHand random_hand(std::uint64_t seed) {
 }
 
 ScenePercepts feel_scene(PipelineSettings settings, const std::string& scene, const ModelHand& hand,
-                         double sound, int moments, const std::function<bool()>& progress) {
+                         double sound, int moments, const SceneVariation& variation,
+                         const std::function<bool()>& progress) {
   settings.scene = scene;
   settings.study_hand.size = hand.size;
   settings.jets.place = JetPlace::Hand;
   const double full_scale = scene_named(scene, world_named(settings.world)).full_scale_pressure;
   WorldStage world(settings, std::make_unique<TremblingHand>(settings.study_hand, hand));
-  StimulusFeeler feeler(settings, full_scale, sound);
+  StimulusFeeler feeler(settings, full_scale, sound, variation.edges);
   settings.emit.full_scale_pressure = emit_settings(settings, full_scale).full_scale_pressure;
   Planner planner(plan_settings(settings, settings.emission_rate()), world.max_cells());
   AmPlanner am(am_settings(settings, settings.emission_rate()), world.max_cells());
@@ -179,12 +211,14 @@ ScenePercepts feel_scene(PipelineSettings settings, const std::string& scene, co
   WorldFrame frame;
   Plan plan;
   PlanStats stats;
+  Random random(hand.seed + 1);
   for (std::int64_t step = 1; std::ssize(out.am) < moments; ++step) {
     const double time = static_cast<double>(step) * dt;
     world.run(step, time, dt, frame);
     if (time < kSettle || step % apart != 0 || frame.hands.hands.empty()) continue;
-    const Pose X_DH = palm_joint(frame.hands.hands.front());
+    const Pose X_DH = displaced(palm_joint(frame.hands.hands.front()), variation, random);
     am.plan(frame.target, plan, stats);
+    if (variation.opposed_foci) oppose(plan);
     out.am.push_back(feeler.feel(plan, frame.target, X_DH));
     planner.plan(frame.target, plan, stats);
     out.pro_stm.push_back(feeler.feel(plan, frame.target, X_DH));

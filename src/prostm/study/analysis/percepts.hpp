@@ -58,12 +58,17 @@ class HandPlaces {
   std::vector<double> weight_;     // places × these cells
 };
 
+/// How the skin of a hand ends.
+enum class SkinEdges : std::uint8_t { None, Reflecting };
+
 /// Computes percepts of plans played on the array of the settings.
 class StimulusFeeler {
  public:
   /// @param full_scale full scale of the scene, as for emit_settings() [Pa]. @param sound acoustic
-  /// pressure of a focal point at intensity 1 [Pa, rms].
-  StimulusFeeler(const PipelineSettings& settings, double full_scale, double sound);
+  /// pressure of a focal point at intensity 1 [Pa, rms]. @param edges Reflecting: the skin ends at
+  /// the outline of the hand, (S14) to (S17); some seconds for a plan of long loops.
+  StimulusFeeler(const PipelineSettings& settings, double full_scale, double sound,
+                 SkinEdges edges = SkinEdges::None);
 
   /// @param X_DH as for HandPlaces. All zeros for a plan without pressure.
   StimulusPercept feel(const Plan& plan, const TargetFrame& target, const Pose& X_DH);
@@ -72,6 +77,7 @@ class StimulusFeeler {
   PipelineSettings settings_;
   EmitSettings emit_;
   double sound_;
+  SkinEdges edges_;
   Medium air_;
   PackedArray packed_;
   WorkerPool pool_;
@@ -86,6 +92,16 @@ struct ModelHand {
 /// A hand of random size and tremor, (Y6).
 ModelHand random_hand(std::uint64_t seed);
 
+/// Differences from the usual simulation of a scene, to test explanations of a study's result.
+struct SceneVariation {
+  /// Standard deviations of the hand's place along each axis of its plane [m] and of its direction
+  /// [rad], drawn for each moment. The jets stay, and so does the pressure on the skin: only the
+  /// places of the hand move under it.
+  double place = 0.0, turn = 0.0;
+  bool opposed_foci = false;  ///< whether every second focus of AM is modulated half a period late
+  SkinEdges edges = SkinEdges::None;
+};
+
 /// Percepts of one scene with each method, moment by moment.
 struct ScenePercepts {
   std::vector<StimulusPercept> am, pro_stm;
@@ -96,6 +112,7 @@ struct ScenePercepts {
 /// @param sound acoustic pressure of a focal point at intensity 1 [Pa, rms]. @param progress called
 /// after each moment; returns false to stop.
 ScenePercepts feel_scene(PipelineSettings settings, const std::string& scene, const ModelHand& hand,
-                         double sound, int moments, const std::function<bool()>& progress);
+                         double sound, int moments, const SceneVariation& variation,
+                         const std::function<bool()>& progress);
 
 }  // namespace prostm

@@ -106,6 +106,31 @@ double as_unlikely_p(Range range, double most_likely, int observed, const Ratio&
   return std::min(1.0, as_unlikely / sum_of(weights));
 }
 
+/// Probabilities of 0, 1, … right answers of a person.
+std::vector<double> beta_binomial(const AnsweringGroup& of) {
+  const double sum = (1.0 - of.correlation) / of.correlation;
+  const double a = sum * of.share, b = sum * (1.0 - of.share);
+  const auto log_beta = [](double x, double y) {
+    return std::lgamma(x) + std::lgamma(y) - std::lgamma(x + y);
+  };
+  std::vector<double> out;
+  for (int k = 0; k <= of.answers; ++k) {
+    const double log_choices =
+        -log_beta(k + 1.0, of.answers - k + 1.0) - std::log(of.answers + 1.0);
+    out.push_back(std::exp(log_choices + log_beta(k + a, of.answers - k + b) - log_beta(a, b)));
+  }
+  return out;
+}
+
+/// Distribution of the sum of two independent counts.
+std::vector<double> convolution(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> out(a.size() + b.size() - 1);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t k = 0; k < b.size(); ++k) out[i + k] += a[i] * b[k];
+  }
+  return out;
+}
+
 }  // namespace
 
 Interval wilson_interval(const Proportion& x, double level) {
@@ -244,6 +269,19 @@ std::optional<double> paired_effect_size(std::span<const double> a, std::span<co
   if (!paired_t(a, b)) return std::nullopt;
   const std::vector<double> change = differences(a, b);
   return mean(change) / std::sqrt(squares(change) / static_cast<double>(change.size() - 1));
+}
+
+double chance_of_lead(const AnsweringGroup& group, int lead) {
+  const std::vector<double> person = beta_binomial(group);
+  std::vector<double> right = {1.0};
+  for (int i = 0; i < group.people; ++i) right = convolution(right, person);
+  double chance = 0.0;
+  for (std::size_t first = 0; first < right.size(); ++first) {
+    for (std::size_t second = first + static_cast<std::size_t>(lead); second < right.size();
+         ++second)
+      chance += right[first] * right[second];
+  }
+  return chance;
 }
 
 double t_test_power(double d, int n, Groups groups, double alpha) {

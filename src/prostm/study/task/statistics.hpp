@@ -82,6 +82,18 @@ std::optional<double> effect_size(std::span<const double> a, std::span<const dou
 /// nothing.
 std::optional<double> paired_effect_size(std::span<const double> a, std::span<const double> b);
 
+/// People who answer, in a group of a study.
+struct AnsweringGroup {
+  int people = 0, answers = 0;  ///< number of people, and of answers of each
+  double share = 0.5;           ///< mean share of right answers
+  /// ρ of two answers of a person: shares of people have a beta distribution with the variance
+  /// ρ p (1 − p).
+  double correlation = 0.1;
+};
+/// Returns the probability that of two such groups, the second has at least `lead` more right
+/// answers, exactly. @pre numbers and lead ≥ 1, 0 < share < 1, 0 < correlation < 1.
+double chance_of_lead(const AnsweringGroup& group, int lead);
+
 /// Whether each participant has one method or all.
 enum class Groups : std::uint8_t { Between, Within };
 /// Returns the power of a t test for an effect of size d, by the noncentral t distribution. @param
