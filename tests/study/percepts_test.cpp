@@ -133,11 +133,15 @@ TEST(Percepts, AVariationChangesWhatItNames) {
   const ScenePercepts opposed = feel({.opposed_foci = true});
   EXPECT_NE(opposed.am[0].skin, am.skin);
   EXPECT_EQ(opposed.pro_stm[0].skin, pro_stm.skin);
+}
 
-  const ScenePercepts ends = feel({.edges = SkinEdges::Reflecting});
-  EXPECT_NE(ends.am[0].skin, am.skin);
-  EXPECT_EQ(ends.am[0].field, am.field);
-  EXPECT_NEAR(ends.am[0].strength / am.strength, 1.0, 0.5);
+TEST(Percepts, WavesReflectAtTheEdgesOfTheSkin) {
+  StimulusFeeler endless(PipelineSettings(), kPressure, kStudySound),
+      ends(PipelineSettings(), kPressure, kStudySound, SkinEdges::Reflecting);
+  const StimulusPercept usual = two_points(endless, 0.04), reflected = two_points(ends, 0.04);
+  EXPECT_NE(reflected.skin, usual.skin);
+  EXPECT_EQ(reflected.field, usual.field);
+  EXPECT_NEAR(reflected.strength / usual.strength, 1.0, 0.5);
 }
 
 TEST(Percepts, HandsDifferWithinBounds) {
