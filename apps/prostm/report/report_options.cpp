@@ -57,8 +57,7 @@ void add_experiments(Command app, Work& work) {
   const Option variations =
       command
           .add_flag("--variations", o->variations,
-                    "simulate the paper's study in variations that could explain its result; half "
-                    "an hour")
+                    "simulate the paper's study in variations that could explain its result; hours")
           .excludes(names)
           .excludes(set)
           .excludes(fit)
