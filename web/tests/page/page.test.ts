@@ -96,7 +96,7 @@ describe("an opened page", () => {
         return data.filter((v, i) => i % 4 === 3 && v > 0).length > 0.1 * canvas.width * canvas.height;
       }, kind, `a hand in the plane of the ${kind}`);
     }
-    await until(page, () => document.querySelectorAll(".strip canvas").length === 7, 0, "seven strips");
+    await until(page, () => document.querySelectorAll(".strip canvas").length === 8, 0, "eight strips");
   });
 });
 
