@@ -37,6 +37,13 @@ class SkinMotion {
   std::span<const std::complex<double>> displacement(int n) const;
 
  protected:
+  // protected, since they are not virtual: models are destroyed as what they are
+  ~SkinMotion() = default;
+  SkinMotion(const SkinMotion&) = default;
+  SkinMotion(SkinMotion&&) = default;
+  SkinMotion& operator=(const SkinMotion&) = default;
+  SkinMotion& operator=(SkinMotion&&) = default;
+
   /// @throws std::invalid_argument for rows or cols not in 1 to 512, or cell not in 0.1 to 20 mm.
   explicit SkinMotion(const SkinPatch& patch);
 

@@ -87,17 +87,17 @@ ModelPercept model_percept(PerceptModel model, const Vibration& vibration, const
 }
 
 /// Returns the response of the nominal skin to a loop.
-std::unique_ptr<SkinMotion> respond(const TargetField& raster, const PressureLoop& loop,
-                                    SkinEdges edges) {
+std::shared_ptr<const SkinMotion> respond(const TargetField& raster, const PressureLoop& loop,
+                                          SkinEdges edges) {
   const SkinModel model{SkinSettings{}};
   const SkinPatch patch{raster.rows, raster.cols, raster.cell};
-  const auto responding = [&](auto skin) -> std::unique_ptr<SkinMotion> {
+  const auto responding = [&](auto skin) -> std::shared_ptr<const SkinMotion> {
     skin->prepare(loop.period, loop.samples);
     skin->respond(loop);
     return skin;
   };
-  if (edges == SkinEdges::None) return responding(std::make_unique<SkinResponse>(model, patch));
-  return responding(std::make_unique<BoundedSkin>(model, patch, raster.skin));
+  if (edges == SkinEdges::None) return responding(std::make_shared<SkinResponse>(model, patch));
+  return responding(std::make_shared<BoundedSkin>(model, patch, raster.skin));
 }
 
 /// Returns a palm joint displaced in the hand's own plane.
@@ -174,7 +174,7 @@ StimulusPercept StimulusFeeler::feel(const Plan& plan, const TargetFrame& target
   loop_drives(settings_.transducers, air_, loop, drive, go_on, drives);
   const std::vector<double> pressure = raster_pressure(packed_, air_, raster, loop, drives, pool_);
   const PressureLoop pressed{loop.samples / loop.sample_rate, felt_parts(loop), pressure};
-  const std::unique_ptr<SkinMotion> motion = respond(raster, pressed, edges_);
+  const std::shared_ptr<const SkinMotion> motion = respond(raster, pressed, edges_);
   const FeltField felt = felt_field(raster, *motion);
   out.skin = hand.of(felt.percept);
   out.strength = felt.intensity;
