@@ -87,7 +87,7 @@ void add_analysis(const Analysis& analysis, Json& document) {
                            {"needed", "needed in a group", "people", 0}},
                           comparison_rows(analysis)));
   document["values"]["words"] = in_words(analysis);
-  blocks.push_back(report::text_block("{/values/words} {/values/sensation_words}"));
+  blocks.push_back(report::text_block("{/values/words}"));
 }
 
 /// A row of the table of observers.
@@ -198,7 +198,7 @@ void make_models(const ReportWork& work, Json& document) {
       "the paper's scores under a model; it is blank without these scores."));
   blocks.push_back(report::table_block("Right answers of models", share_columns(),
                                        observer_table(rows, people)));
-  blocks.push_back(report::text_block("{/values/words}"));
+  blocks.push_back(report::text_block("{/values/words} {/values/sensation_words}"));
 }
 
 }  // namespace prostm::app
