@@ -10,7 +10,7 @@
 namespace prostm::bench {
 namespace {
 
-constexpr std::uint64_t kTuningSeed = 1, kScoutSeed = 101, kNewSeed = 201;
+constexpr std::uint64_t kTuningSeed = 1, kScoutSeed = 101, kNewSeed = 201, kDrawnSeed = 401;
 
 std::vector<NamedField> gallery() {
   constexpr int kCells = 54;  // per edge of the raster; each of 3 mm
@@ -72,6 +72,8 @@ std::vector<NamedField> whole_set(SetName set) {
       return generated(fields::kFeltKinds, kScoutSeed, 2);
     case SetName::Plumes:
       return plumes();
+    case SetName::Drawn:
+      return generated(fields::kDrawnKinds, kDrawnSeed, 24);
     case SetName::New:
       break;
   }

@@ -129,6 +129,7 @@ Judged Judge::judge(const Plan& plan, const TargetField& target, std::uint64_t s
   out.felt = score_physical(target, out.percept, 0.0);
   out.envelope = score_physical(target, pressed.envelope, 0.0);
   out.intensity = perceived_intensity(motion);
+  out.strongest = *std::ranges::max_element(out.percept);
   for (std::size_t r = 0; r < kReadouts.size(); ++r)
     out.readout[r] = skill_of(target, map_of(kReadouts[r], motion, target));
   for (std::size_t s = 0; s < feel_.size(); ++s) {

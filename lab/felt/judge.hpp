@@ -20,6 +20,7 @@ struct Judged {
   Metrics felt;                                    ///< of the map √e on the first skin
   Metrics envelope;                                ///< of the largest pressure over the loop
   double intensity = 0.0;                          ///< √E on the first skin [m]
+  double strongest = 0.0;                          ///< largest √e on the first skin [m]
   std::array<double, kReadouts.size()> readout{};  ///< S_8.5 of each
   std::vector<double> skin;                        ///< S_8.5 of √e on each skin
   std::vector<double> disturbed;  ///< the same under each disturbance; empty for a control

@@ -82,15 +82,11 @@ Metrics metrics_from_json(const nlohmann::json& list) {
 }
 
 Json to_json(const Judged& judged) {
-  return {{"felt", metrics_to_json(judged.felt)},
-          {"envelope", metrics_to_json(judged.envelope)},
-          {"intensity", judged.intensity},
-          {"readouts", judged.readout},
-          {"skins", judged.skin},
-          {"disturbed", judged.disturbed},
-          {"ghosts", judged.ghosts},
-          {"crossings", judged.crossings},
-          {"long_paths", judged.long_paths}};
+  return {{"felt", metrics_to_json(judged.felt)}, {"envelope", metrics_to_json(judged.envelope)},
+          {"intensity", judged.intensity},        {"strongest", judged.strongest},
+          {"readouts", judged.readout},           {"skins", judged.skin},
+          {"disturbed", judged.disturbed},        {"ghosts", judged.ghosts},
+          {"crossings", judged.crossings},        {"long_paths", judged.long_paths}};
 }
 
 Judged judged_from_json(const nlohmann::json& one) {
@@ -98,6 +94,7 @@ Judged judged_from_json(const nlohmann::json& one) {
   out.felt = metrics_from_json(one.at("felt"));
   out.envelope = metrics_from_json(one.at("envelope"));
   one.at("intensity").get_to(out.intensity);
+  one.at("strongest").get_to(out.strongest);
   one.at("readouts").get_to(out.readout);
   one.at("skins").get_to(out.skin);
   one.at("disturbed").get_to(out.disturbed);

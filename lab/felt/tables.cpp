@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace prostm::bench {
@@ -72,6 +73,30 @@ void print_readouts(const JudgedSet& set) {
         1e6 * mean(each(way, [](const Judged& j) { return j.intensity; })), mean(louder),
         *std::min_element(louder.begin(), louder.end()), sum(&Judged::ghosts),
         sum(&Judged::crossings), sum(&Judged::long_paths));
+  }
+}
+
+/// Prints shape and strength side by side: means over the fields, relative to the first way, and
+/// the fields where the way is worse in both.
+void print_strength(const JudgedSet& set) {
+  const auto strongest = [](const Judged& j) { return j.strongest; };
+  const std::vector<double> first = each(set.results[0], strongest);
+  fmt::print(
+      "\n{}: felt shape and strength, the largest √e; ratios of means to those of {}\n{:<20} {:>6} "
+      "{:>6} {:>9} {:>6} {:>6} {:>13}\n",
+      set.name, set.ways[0], "", "S_8.5", "lack", "strongest", "ratio", "least", "worse in both");
+  for (std::size_t w = 0; w < set.ways.size(); ++w) {
+    const std::vector<Judged>& way = set.results[w];
+    const std::vector<double> own = each(way, strongest);
+    double least = std::numeric_limits<double>::infinity();
+    int worse = 0;
+    for (std::size_t f = 0; f < own.size(); ++f) {
+      least = std::min(least, own[f] / first[f]);
+      worse += own[f] < first[f] && skill(way[f]) < skill(set.results[0][f]) ? 1 : 0;
+    }
+    const Compared c = compare(each(way, skill), each(set.results[0], skill));
+    fmt::print("{:<20} {:>6.3f} {:>6.2f} {:>6.3f} µm {:>6.2f} {:>6.2f} {:>13}\n", set.ways[w],
+               c.mean, c.lack, 1e6 * mean(own), mean(own) / mean(first), least, worse);
   }
 }
 
@@ -155,17 +180,18 @@ JudgedSet pooled(const std::string& name, const std::vector<JudgedSet>& sets) {
 
 void print_tables(const JudgedSet& set) {
   print_felt(set);
+  print_strength(set);
   print_readouts(set);
   print_skins(set);
   print_disturbances(set);
 }
 
 void print_each(const JudgedSet& set) {
-  fmt::print("\n{}: S_8.5 of what is felt, and √E in µm\n", set.name);
+  fmt::print("\n{}: S_8.5 of what is felt, and the largest √e in µm\n", set.name);
   for (std::size_t f = 0; f < set.fields.size(); ++f) {
     fmt::print("{:<28}", set.fields[f]);
     for (const std::vector<Judged>& way : set.results)
-      fmt::print(" {:>6.3f} {:>5.2f}", way[f].felt.skill_8, 1e6 * way[f].intensity);
+      fmt::print(" {:>6.3f} {:>5.2f}", way[f].felt.skill_8, 1e6 * way[f].strongest);
     fmt::print("\n");
   }
 }
@@ -183,6 +209,7 @@ void add_rows(const JudgedSet& set, std::vector<Row>& rows) {
     add(w, "1 - S_8.5", "", [](const Judged& j) { return 1.0 - j.felt.skill_8; });
     add(w, "1 - S_8.5, envelope", "", [](const Judged& j) { return 1.0 - j.envelope.skill_8; });
     add(w, "sqrt E", "um", [](const Judged& j) { return 1e6 * j.intensity; });
+    add(w, "strongest", "um", [](const Judged& j) { return 1e6 * j.strongest; });
   }
 }
 

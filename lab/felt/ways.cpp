@@ -1,5 +1,7 @@
 #include "felt/ways.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -94,6 +96,15 @@ std::vector<Way> ways(const TransducerArray& array) {
   by_points.felt_points = true;
   all.push_back(pro_stm("felt A", by_pressures, array));
   all.push_back(pro_stm("felt B", by_points, array));
+  for (int paths = 1; paths < best.paths; ++paths) {
+    for (const auto& [name, settings] :
+         {std::pair("best", best), {"felt A", by_pressures}, {"felt B", by_points}}) {
+      PlanSettings fewer = settings;
+      fewer.paths = paths;
+      all.push_back(pro_stm(fmt::format("{}, {} {}", name, paths, paths == 1 ? "path" : "paths"),
+                            fewer, array));
+    }
+  }
   all.push_back(pro_stm("paper-valid", paper, array));
   all.push_back(am("AM, 4 foci", 4, array));
   all.push_back(am("AM, 8 foci", 8, array));

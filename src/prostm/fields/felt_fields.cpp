@@ -200,6 +200,55 @@ Pattern2 unseen_pattern(FeltKind kind, Random& random) {
   }
 }
 
+/// Returns a random blob, bar or arc.
+Pattern2 drawn_part(Random& random) {
+  Vec2 at;
+  at.y() = random.uniform(-0.030, 0.030);
+  at.x() = random.uniform(-0.022, 0.022);
+  const double strength = random.uniform(0.4, 1.0), sigma = random.uniform(0.005, 0.009),
+               size = random.uniform(), from = random.uniform(0.0, 2.0 * kPi);
+  const auto scaled = [strength](Pattern2 pattern) -> Pattern2 {
+    return [=](const Vec2& x) { return strength * pattern(x); };
+  };
+  switch (random.below(3)) {
+    case 0:
+      return scaled([at, wide = (1.0 + size) * sigma](const Vec2& x) {
+        return gaussian((x - at).squaredNorm(), wide);
+      });
+    case 1: {
+      const Vec2 half = (0.010 + 0.025 * size) * unit(from);
+      return scaled(ridge({{at - half, at + half}}, sigma));
+    }
+    default: {
+      constexpr int kPoints = 24;
+      const double radius = 0.012 + 0.014 * size, turn = random.uniform(0.8 * kPi, 2.0 * kPi);
+      Line arc;
+      for (int i = 0; i <= kPoints; ++i)
+        arc.push_back(at + radius * unit(from + turn * i / kPoints));
+      return scaled(ridge({arc}, sigma));
+    }
+  }
+}
+
+/// Returns a pattern of kDrawnKinds about the origin [m].
+Pattern2 drawn_pattern(Random& random) {
+  std::vector<Pattern2> parts(static_cast<std::size_t>(1 + random.below(4)));
+  for (Pattern2& part : parts) part = drawn_part(random);
+  return [parts](const Vec2& x) {
+    double most = 0.0;
+    for (const Pattern2& part : parts) most = std::max(most, part(x));
+    return most;
+  };
+}
+
+/// Returns a pattern of a kind about the origin [m].
+Pattern2 pattern_of(FeltKind kind, Random& random) {
+  if (std::ranges::find(kDrawnKinds, kind) != kDrawnKinds.end()) return drawn_pattern(random);
+  if (std::ranges::find(kUnseenKinds, kind) != kUnseenKinds.end())
+    return unseen_pattern(kind, random);
+  return seen_pattern(kind, random);
+}
+
 /// Returns the centre of the palm of an outline [m].
 Vec2 palm_of(Outline outline) {
   return outline == Outline::Hand ? Vec2(0.0, -0.040) : Vec2(0.0, 0.0);
@@ -240,7 +289,7 @@ std::string to_string(FeltKind kind) {
   constexpr std::array names{
       "plume",        "two plumes", "three plumes", "four plumes", "circle",  "cross",  "gradient",
       "stripe",       "front",      "strokes",      "blob pair",   "speckle", "spiral", "crescent",
-      "checkerboard", "zigzag",     "triangle",     "moat",        "steps",   "comb"};
+      "checkerboard", "zigzag",     "triangle",     "moat",        "steps",   "comb",   "drawn"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -250,9 +299,7 @@ std::string to_string(Outline outline) {
 
 TargetField felt_field(FeltKind kind, std::uint64_t seed, Outline outline) {
   Random random(1000 * seed + static_cast<std::uint64_t>(kind));
-  const bool unseen =
-      std::find(kUnseenKinds.begin(), kUnseenKinds.end(), kind) != kUnseenKinds.end();
-  const Pattern2 pattern = unseen ? unseen_pattern(kind, random) : seen_pattern(kind, random);
+  const Pattern2 pattern = pattern_of(kind, random);
   constexpr double kAside = 0.010;  // largest distance from the palm's centre [m]
   Vec2 centre = palm_of(outline);
   centre.y() += random.uniform(-kAside, kAside);

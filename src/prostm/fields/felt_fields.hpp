@@ -1,6 +1,6 @@
 #pragma once
 /// Generated target fields for evaluating the percept of plans: flat skin 200 mm above the array,
-/// of two outlines, with pressure patterns of twenty kinds. The seed determines a pattern's
+/// of two outlines, with pressure patterns of 21 kinds. The seed determines a pattern's
 /// position, rotation and size.
 ///
 /// All fields depend on their arguments alone. Rasters are centred on the origin; the largest
@@ -20,8 +20,8 @@ enum class Outline {
   Palm   ///< an oval of 76 mm × 96 mm, cells of 4 mm
 };
 
-/// The kind of a pattern. Those of kUnseenKinds are reserved for evaluation: nothing may be tuned
-/// on them.
+/// The kind of a pattern. Those of kUnseenKinds and kDrawnKinds are reserved for evaluation:
+/// nothing may be tuned on them.
 enum class FeltKind {
   Plume,
   TwoPlumes,
@@ -43,7 +43,9 @@ enum class FeltKind {
   Triangle,  ///< its outline
   Moat,      ///< a disc with a trench around its middle
   Steps,     ///< three plateaus side by side
-  Comb       ///< three bars of different strength
+  Comb,      ///< three bars of different strength
+  // unseen, and of no designed shape
+  Drawn  ///< the strongest of one to four random blobs, bars and arcs at each point
 };
 inline constexpr std::array kFeltKinds{
     FeltKind::Plume,  FeltKind::TwoPlumes, FeltKind::ThreePlumes, FeltKind::FourPlumes,
@@ -52,6 +54,7 @@ inline constexpr std::array kFeltKinds{
 inline constexpr std::array kUnseenKinds{
     FeltKind::Spiral,   FeltKind::Crescent, FeltKind::Checkerboard, FeltKind::Zigzag,
     FeltKind::Triangle, FeltKind::Moat,     FeltKind::Steps,        FeltKind::Comb};
+inline constexpr std::array kDrawnKinds{FeltKind::Drawn};
 
 /// Returns the name in tables: "plume", "two plumes", …
 std::string to_string(FeltKind kind);
