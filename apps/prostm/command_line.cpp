@@ -27,8 +27,8 @@ Option Option::needs(Option other) const {
   return Option(*option_->needs(other.option_));
 }
 
-Option Option::excludes(Option other) const {
-  return Option(*option_->excludes(other.option_));
+void Option::exclude(Option other) const {
+  option_->excludes(other.option_);
 }
 
 Option Option::type_name(const std::string& name) const {

@@ -2,6 +2,7 @@
 /// The parser of the command line. Its library, CLI11, is seen by two sources alone: its headers
 /// and templates take ten seconds in each.
 
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -31,7 +32,11 @@ class Option {
 
   Option required() const;
   Option needs(Option other) const;
-  Option excludes(Option other) const;
+  template <std::same_as<Option>... Others>
+  Option excludes(Others... others) const {
+    (exclude(others), ...);
+    return *this;
+  }
   /// Sets the word that stands for the value on the help page.
   Option type_name(const std::string& name) const;
   /// Shows a default on the help page: the value of the option's variable, or `text`.
@@ -43,6 +48,8 @@ class Option {
   Option repeatable() const;
 
  private:
+  void exclude(Option other) const;
+
   CLI::Option* option_;
 };
 

@@ -150,10 +150,9 @@ bool has_study(const Chosen& experiments) {
 }
 
 /// Returns the paper's study with each observer, with and without its threshold.
-Json study_rows(StudyPredictions& study, const Observers& chosen) {
+Json study_rows(StudyPredictions& study, const std::vector<FittedObserver>& observers) {
   Json rows = Json::array();
-  for (const FittedObserver& of : frozen_observers()) {
-    if (std::ranges::find(chosen, std::pair(of.model, of.readout)) == chosen.end()) continue;
+  for (const FittedObserver& of : observers) {
     const auto strengths = study.strengths(of.model);
     for (const bool threshold : {false, true}) {
       Json& row = rows.emplace_back(
@@ -210,6 +209,17 @@ Observers chosen_observers(const ExperimentsOptionsGiven& options) {
   return out;
 }
 
+/// The frozen ones of the observers that the options choose.
+std::vector<FittedObserver> chosen_frozen(const ExperimentsOptionsGiven& options) {
+  const Observers chosen = chosen_observers(options);
+  std::vector<FittedObserver> out;
+  for (const FittedObserver& of : frozen_observers()) {
+    if (std::ranges::find(chosen, std::pair(of.model, of.readout)) != chosen.end())
+      out.push_back(of);
+  }
+  return out;
+}
+
 /// Draws a chart for each experiment: the published numbers by their place in its list, and the
 /// predicted ones.
 void draw(const std::vector<Column>& columns, const std::string& path) {
@@ -245,12 +255,11 @@ void draw(const std::vector<Column>& columns, const std::string& path) {
 
 /// Returns the predictions of a guess and of the chosen observers.
 std::vector<Column> predicted_columns(Laboratory& laboratory, const Chosen& experiments,
-                                      const Observers& chosen) {
+                                      const std::vector<FittedObserver>& observers) {
   std::vector<Column> columns = {{"guess", {}}};
   for (const Experiment* one : experiments)
     columns.front().experiments.push_back(predict(laboratory, nullptr, *one));
-  for (const FittedObserver& of : frozen_observers()) {
-    if (std::ranges::find(chosen, std::pair(of.model, of.readout)) == chosen.end()) continue;
+  for (const FittedObserver& of : observers) {
     const Observer observer = of.observer();
     Column& column = columns.emplace_back(Column{of.name(), {}});
     for (const Experiment* one : experiments)
@@ -273,13 +282,10 @@ int leave_one_out(const ExperimentsOptionsGiven& options, Laboratory& laboratory
                   Progress& progress) {
   std::FILE* out = prose(options.json);
   Json rows = Json::array();
-  const Observers chosen = chosen_observers(options);
   std::vector<std::string> papers;
   for (const Experiment* one : fitted_experiments(""))
     if (papers.empty() || papers.back() != one->paper_id) papers.push_back(one->paper_id);
-  for (const FittedObserver& frozen : frozen_observers()) {
-    if (std::ranges::find(chosen, std::pair(frozen.model, frozen.readout)) == chosen.end())
-      continue;
+  for (const FittedObserver& frozen : chosen_frozen(options)) {
     for (const std::string& paper : papers) {
       const FittedObserver of =
           fit_observer(laboratory, frozen.model, frozen.readout, fitted_experiments(paper));
@@ -310,14 +316,8 @@ int leave_one_out(const ExperimentsOptionsGiven& options, Laboratory& laboratory
 int vary(const ExperimentsOptionsGiven& options, const std::function<bool()>& go_on,
          Progress& progress) {
   std::FILE* out = prose(options.json);
-  std::vector<FittedObserver> observers;
-  const Observers chosen = chosen_observers(options);
-  for (const FittedObserver& of : frozen_observers()) {
-    if (std::ranges::find(chosen, std::pair(of.model, of.readout)) != chosen.end())
-      observers.push_back(of);
-  }
   progress.clear();
-  const Json rows = print_reversal(out, observers, kHands, go_on);
+  const Json rows = print_reversal(out, chosen_frozen(options), kHands, go_on);
   write_json(options.json, Json{{"variations", rows}});
   say_written(out, options.json);
   return 0;
@@ -343,7 +343,7 @@ int fit(const ExperimentsOptionsGiven& options, Laboratory& laboratory, Progress
 int experiments_command(const ExperimentsOptionsGiven& options) {
   std::FILE* out = prose(options.json);
   const Chosen experiments = chosen_experiments(options);
-  const auto chosen = chosen_observers(options);
+  const auto observers = chosen_frozen(options);
   const Interrupt interrupt;
   Progress progress("computing the stimuli");
   Laboratory laboratory(SkinSettings{}, at_measured_amplitude(usx_array()), [&] {
@@ -358,14 +358,14 @@ int experiments_command(const ExperimentsOptionsGiven& options) {
     if (!options.fit.empty()) return fit(options, laboratory, progress);
     if (options.leave_one_out) return leave_one_out(options, laboratory, progress);
     if (options.variations) return vary(options, go_on, progress);
-    const std::vector<Column> columns = predicted_columns(laboratory, experiments, chosen);
+    const std::vector<Column> columns = predicted_columns(laboratory, experiments, observers);
     progress.clear();
     print_cells(out, columns);
     print_losses(out, columns);
     fmt::print(out, "\nParameters: SHA-256 {}\n", frozen_hash());
     Json document = {{"parameters_sha256", frozen_hash()}};
     if (has_study(experiments)) {
-      document["paper_study"] = study_rows(study, chosen);
+      document["paper_study"] = study_rows(study, observers);
       print_study(out, document["paper_study"]);
     }
     for (const Column& column : columns) document["observers"].push_back(column_json(column));

@@ -45,30 +45,23 @@ void add_experiments(Command app, Work& work) {
   const Option fit =
       add_output(command, o->files, "--fit", o->fit, check_json_output,
                  "fit the observers to the experiments of the set fit, and write their parameters")
-          .excludes(names)
-          .excludes(set);
+          .excludes(names, set);
   const Option without =
       command
           .add_flag("--leave-one-out", o->leave_one_out,
                     "fit without each paper of the set fit in turn, and print what moves")
-          .excludes(names)
-          .excludes(set)
-          .excludes(fit);
+          .excludes(names, set, fit);
   const Option variations =
       command
           .add_flag("--variations", o->variations,
-                    "simulate the paper's study in variations that could explain its result; hours")
-          .excludes(names)
-          .excludes(set)
-          .excludes(fit)
-          .excludes(without);
+                    "simulate the paper's study in variations that could explain its result; takes "
+                    "a quarter of an hour")
+          .excludes(names, set, fit, without);
   add_json(command, o->files, o->json);
   command.option("--json").excludes(fit);
   add_output(command, o->files, "--figure", o->figure, check_figure,
              "draw published and predicted numbers, a chart for each experiment")
-      .excludes(fit)
-      .excludes(without)
-      .excludes(variations);
+      .excludes(fit, without, variations);
   command.footer("Example:\n  prostm experiments howard-2023 --model peak");
   set_work(command, work, o->files, [o] { return experiments_command(*o); });
 }

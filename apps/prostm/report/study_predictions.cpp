@@ -53,11 +53,12 @@ void StudyPredictions::feel() {
   if (!go_on_()) throw StudyStopped{};
 }
 
-std::vector<ModelParticipant> StudyPredictions::pool(const Observer& observer, std::size_t method) {
+std::vector<ModelParticipant> StudyPredictions::pool(const Observer& observer, std::size_t method,
+                                                     double adaptation) {
   std::vector<ModelParticipant> out;
   ObserverParameters parameters = observer.parameters();
   if (kStudyMethods[method].percepts == &ScenePercepts::am)
-    parameters.threshold *= std::pow(10.0, variation_.adaptation_db / 20.0);
+    parameters.threshold *= std::pow(10.0, adaptation / 20.0);
   const Observer adapted(observer.model(), observer.readout(), parameters);
   for (const HandPercepts& hand : hands_) {
     std::array<std::vector<ModelPercept>, 2> felt;
@@ -71,16 +72,17 @@ std::vector<ModelParticipant> StudyPredictions::pool(const Observer& observer, s
   return out;
 }
 
-const StudyQuantities& StudyPredictions::of(const Observer& observer) {
-  const std::string key = fmt::format("{} {} {}", name_of(observer.model()),
-                                      name_of(observer.readout()), observer.parameters().threshold);
+const StudyQuantities& StudyPredictions::of(const Observer& observer, double adaptation) {
+  const std::string key =
+      fmt::format("{} {} {} {}", name_of(observer.model()), name_of(observer.readout()),
+                  observer.parameters().threshold, adaptation);
   const auto found = known_.find(key);
   if (found != known_.end()) return found->second;
   feel();
   StudyQuantities out;
   for (std::size_t m = 0; m < kStudyMethods.size(); ++m) {
     const std::string method = kStudyMethods[m].name;
-    const std::vector<ModelParticipant> people = pool(observer, m);
+    const std::vector<ModelParticipant> people = pool(observer, m, adaptation);
     std::array<double, 2> right{};
     for (std::size_t s = 0; s < right.size(); ++s) {
       for (const ModelParticipant& who : people)

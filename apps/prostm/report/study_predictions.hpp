@@ -24,7 +24,6 @@ struct StudyVariation {
   const char* change = "nothing";  ///< in words
   void (*apply)(PipelineSettings& settings) = nullptr;
   SceneVariation scene = {};
-  double adaptation_db = 0.0;            ///< by which AM's threshold is raised
   std::size_t in_trial = kTrialMoments;  ///< moments of a trial
 };
 
@@ -37,12 +36,14 @@ class StudyPredictions {
 
   /// Returns all quantities for an observer. The first call computes the percepts, which takes a
   /// minute.
-  const StudyQuantities& of(const Observer& observer);
+  /// @param adaptation rise of the threshold by AM's steady vibration [dB].
+  const StudyQuantities& of(const Observer& observer, double adaptation = 0.0);
   /// Mean strength with each method in each scene, (X7), over all hands [m, or Pa].
   std::array<std::array<double, 2>, 2> strengths(PerceptModel model);
 
  private:
-  std::vector<ModelParticipant> pool(const Observer& observer, std::size_t method);
+  std::vector<ModelParticipant> pool(const Observer& observer, std::size_t method,
+                                     double adaptation);
   void feel();
 
   SimulateOptionsGiven given_;

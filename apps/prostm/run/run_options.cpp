@@ -49,7 +49,7 @@ void add_run(Command app, Work& work) {
   auto fast = command.add_flag("--as-fast-as-possible", o->as_fast_as_possible,
                                "run without a clock, dropping nothing");
   auto stepped = command.add_flag("--stepped", o->stepped, "the same on one thread");
-  realtime.excludes(fast).excludes(stepped);
+  realtime.excludes(fast, stepped);
   fast.excludes(stepped);
   add_name(command, "--switch", o->switch_at,
            "when a new plan takes over: lap (default), at the end of each path's lap, or "
