@@ -32,6 +32,12 @@ describe("a page without a hand", () => {
     await page.locator("#no-hand").waitFor();
     expect(await text("no-hand-advice")).toContain("Use my mouse as the hand");
     expect(await page.locator("#no-hand-planes").isVisible()).toBe(true);
+    // the sign lets the pointer through to the picture
+    const under = await page.locator("#no-hand").evaluate((sign) => {
+      const { left, top, width, height } = sign.getBoundingClientRect();
+      return document.elementFromPoint(left + width / 2, top + height / 2)?.id;
+    });
+    expect(under).toBe("view");
     expect(await page.locator('#tiles [data-number="latency_p50_ms"]').textContent()).toBe("–");
     expect(await text("output-word")).toBe("Output off");
     expect(await text("output-why")).toBe("no hand in sight");
