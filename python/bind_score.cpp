@@ -97,7 +97,7 @@ void bind_score(py::module_& m) {
       "sensation_words",
       [](double level, const std::string& array) {
         require_between("level", level, -400.0, 400.0, "dB");
-        return sensation_words(level, array_from_name(array));
+        return sensation_words(level, sensation_interval(array_from_name(array)));
       },
       "A sensation_level with its interval, and what it means, as text. Raises ValueError for a\n"
       "level that is not finite.",

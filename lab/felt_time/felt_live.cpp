@@ -16,15 +16,6 @@ namespace {
 
 constexpr double kBlock = 1e-3;  // block that a device requests at a time [s]
 
-double largest_pressure(const Plan& plan) {
-  double largest = 0.0;
-  for (const FocalPath& path : plan.paths) {
-    for (const double p : path.pressure) largest = std::max(largest, p);
-  }
-  for (const FocalPoint& focus : plan.foci) largest = std::max(largest, focus.pressure);
-  return largest;
-}
-
 void check(std::span<const LivePlan> plans, const LiveSettings& settings, const TimeSkin& skin) {
   if (plans.empty()) throw std::invalid_argument("there must be at least one plan");
   const SkinPatch& patch = skin.patch();

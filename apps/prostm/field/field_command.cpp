@@ -107,10 +107,11 @@ void print_power(std::FILE* out, const PhysicalReport& r) {
   }
 }
 
-/// Returns the level of the percept. A full scale that was given is that of intensity 1.
-double level_of(const PhysicalReport& r, bool full_scale_given) {
-  return full_scale_given ? sensation_level(r.felt->largest, *r.array)
-                          : loop_sensation_level(*r.felt, *r.loop, *r.array);
+/// Sets the level of the percept. A full scale that was given is that of intensity 1.
+void set_sensation(bool full_scale_given, PhysicalReport& r) {
+  r.sensation_level = full_scale_given ? sensation_level(r.felt->largest)
+                                       : loop_sensation_level(*r.felt, *r.loop, *r.array);
+  r.sensation_interval = full_scale_given ? sensation_interval() : sensation_interval(*r.array);
 }
 
 void print_felt(std::FILE* out, const PhysicalReport& r) {
@@ -122,14 +123,15 @@ void print_felt(std::FILE* out, const PhysicalReport& r) {
   }
   fmt::print(out,
              "  felt like a vibration at 250 Hz of {:.2f} µm rms at the peak, {:.2f} µm over the "
-             "whole skin, at the nominal amplitude",
-             1e6 * r.felt->largest, 1e6 * r.felt->intensity);
+             "whole skin{}",
+             1e6 * r.felt->largest, 1e6 * r.felt->intensity,
+             r.sensation_interval.sound == SoundSource::Given ? "" : ", at the nominal amplitude");
   if (r.ghosts != nullptr) {
     fmt::print(out, "; {} ghosts above half of the peak, the strongest {:.0f} %", r.ghosts->count,
                100.0 * r.ghosts->largest);
   }
   fmt::print(out, "\n");
-  print_sensation(out, r.sensation_level, *r.array);
+  print_sensation(out, r.sensation_level, r.sensation_interval);
 }
 
 void print_spectrum(std::FILE* out, const PhysicalReport& r) {
@@ -302,7 +304,7 @@ int field_command(const FieldOptionsGiven& given) {
     judgement.felt =
         skin.feel(input.raster, loop.samples / loop.sample_rate, field.parts, field.part);
     report.felt = &judgement.felt;
-    report.sensation_level = level_of(report, given.full_scale_pa > 0.0);
+    set_sensation(given.full_scale_pa > 0.0, report);
     if (given.felt_spectrum) report.spectrum = felt_spectrum(input.raster, skin.motion());
   }
   if (input.has_target) judge(input, all.plan, report, judgement);

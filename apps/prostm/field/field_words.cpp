@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/core/text/number_text.hpp"
 
 namespace prostm::app {
@@ -177,13 +176,12 @@ std::vector<std::string> control_warnings(const Metrics& played,
                               : "the percept will hardly resemble the field")};
 }
 
-void print_sensation(std::FILE* out, double level, const TransducerArray& array) {
+void print_sensation(std::FILE* out, double level, const SensationInterval& interval) {
   if (!std::isfinite(level)) return;
-  fmt::print(out, "  sensation level: {}\n", sensation_words(level, array));
-  if (array.measured_amplitude == 0.0) {
-    fmt::print(out, "  (at the nominal amplitude of {}; no sound level was measured at a focus)\n",
-               array.name);
-  }
+  const char* sound = interval.sound == SoundSource::Nominal
+                          ? "; no sound level of this array was measured, so this is nominal"
+                          : "";
+  fmt::print(out, "  estimated sensation level: {}{}\n", sensation_words(level, interval), sound);
 }
 
 }  // namespace prostm::app

@@ -1,11 +1,11 @@
 #pragma once
-/// Messages of `prostm plan` about the field it read, and about its plan.
+/// Messages about fields, plans, and how strongly they are felt.
 
 #include <cstdio>
 #include <string>
 #include <vector>
 
-#include "prostm/acoustics/array/array.hpp"
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/io/field/field_file.hpp"
 #include "prostm/score/score.hpp"
 
@@ -29,7 +29,7 @@ std::string verdict(const TargetField& field, const Plan& plan, const Metrics& p
 std::vector<std::string> control_warnings(const Metrics& played,
                                           const std::vector<Control>& controls, bool by_felt);
 
-/// Prints how strongly the output of an array is felt; nothing for a level of NaN.
-void print_sensation(std::FILE* out, double level, const TransducerArray& array);
+/// Prints how strongly a stimulus is felt; nothing for a level of NaN.
+void print_sensation(std::FILE* out, double level, const SensationInterval& interval);
 
 }  // namespace prostm::app

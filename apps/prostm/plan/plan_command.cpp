@@ -263,7 +263,7 @@ void write_plan(const Result& r, const TargetField& target, const PipelineSettin
   if (extras.method == Method::ProStm) extras.preset = settings.plan.preset;
   extras.stats = &r.stats;
   extras.quality = &r.quality;
-  if (array_given) extras.array = &settings.transducers;
+  if (array_given) extras.sensation = sensation_interval(settings.transducers);
   extras.controls = &r.controls;
   extras.warnings = &r.warnings;
   extras.program = version_text();
@@ -307,7 +307,7 @@ void print_plan(std::FILE* out, const Result& r, const TargetField& target,
     fmt::print(out, "  {:<44} {:>7.3f}\n", "this plan, by the field's weights", *r.weighted);
   }
   print_power(out, r.plan, power_limit(settings));
-  print_sensation(out, r.quality.played.sensation_level, settings.transducers);
+  print_sensation(out, r.quality.played.sensation_level, sensation_interval(settings.transducers));
 }
 
 void write_results(const Result& r, const TargetField& target, const PipelineSettings& settings,

@@ -24,14 +24,12 @@ int pressed_patch(const TargetFrame& frame) {
 }  // namespace
 
 void FeltPlans::offer(const WorldFrame& contact, const PlanFrame& plan) {
-  const std::size_t place =
-      kept_.size() < kKept ? kept_.size()
-                           : static_cast<std::size_t>(random_.below(
-                                 static_cast<int>(std::min<std::int64_t>(offered_ + 1, 1 << 30))));
+  // every plan so far is kept with the same probability
+  const int place = offered_ < kKept ? offered_ : random_.below(offered_ + 1);
   ++offered_;
   if (place >= kKept) return;
-  if (place == kept_.size()) kept_.emplace_back();
-  kept_[place] = {contact.target, plan.plan, plan.full_scale_pressure};
+  kept_.resize(static_cast<std::size_t>(std::min(offered_, kKept)));
+  kept_[static_cast<std::size_t>(place)] = {contact.target, plan.plan, plan.full_scale_pressure};
 }
 
 std::optional<FeltLevels> FeltPlans::levels(const PipelineSettings& settings) const {
@@ -57,9 +55,9 @@ std::optional<FeltLevels> FeltPlans::levels(const PipelineSettings& settings) co
 }
 
 nlohmann::ordered_json felt_levels_json(const std::optional<FeltLevels>& levels,
-                                        const TransducerArray& array) {
+                                        const SensationInterval& interval) {
   if (!levels) return nullptr;
-  nlohmann::ordered_json json = sensation_to_json(levels->median, array);
+  nlohmann::ordered_json json = sensation_to_json(levels->median, interval);
   json["plans"] = levels->plans;
   json["lowest_db"] = levels->lowest;
   json["highest_db"] = levels->highest;
@@ -67,9 +65,9 @@ nlohmann::ordered_json felt_levels_json(const std::optional<FeltLevels>& levels,
 }
 
 void print_felt_levels(std::FILE* out, const std::optional<FeltLevels>& levels,
-                       const TransducerArray& array) {
+                       const SensationInterval& interval) {
   if (!levels) return;
-  print_sensation(out, levels->median, array);
+  print_sensation(out, levels->median, interval);
   if (levels->plans > 1) {
     fmt::print(out, "  (median of {} plans, {:.0f} to {:.0f} dB)\n", levels->plans, levels->lowest,
                levels->highest);

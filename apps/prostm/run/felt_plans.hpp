@@ -1,12 +1,12 @@
 #pragma once
 /// How strongly the plans of a run are felt.
 
-#include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 
@@ -30,23 +30,23 @@ class FeltPlans {
   std::optional<FeltLevels> levels(const PipelineSettings& settings) const;
 
  private:
-  static constexpr std::size_t kKept = 3;
+  static constexpr int kKept = 3;
   struct Kept {
     TargetFrame target;
     Plan plan;
     double full_scale_pressure = 0.0;
   };
   std::vector<Kept> kept_;
-  std::int64_t offered_ = 0;
+  int offered_ = 0;
   Random random_{1};
 };
 
 /// "sensation" of prostm-run/1: null without levels.
 nlohmann::ordered_json felt_levels_json(const std::optional<FeltLevels>& levels,
-                                        const TransducerArray& array);
+                                        const SensationInterval& interval);
 
 /// Prints the levels with their meaning; nothing without levels.
 void print_felt_levels(std::FILE* out, const std::optional<FeltLevels>& levels,
-                       const TransducerArray& array);
+                       const SensationInterval& interval);
 
 }  // namespace prostm::app

@@ -209,7 +209,7 @@ struct Ending {
     json["array"] = pipeline.device().description();
     std::optional<FeltLevels> felt;
     if (summary.seconds >= kLeastFelt) felt = observer.felt().levels(settings);
-    json["sensation"] = felt_levels_json(felt, settings.transducers);
+    json["sensation"] = felt_levels_json(felt, sensation_interval(settings.transducers));
     json["settings"] = settings_to_json(settings_groups(settings));
     Attempts attempts;
     attempts.add([&] {
@@ -225,7 +225,7 @@ struct Ending {
     attempts.add([&] { draw(summary, never_came(tracker)); });
     attempts.add([&] {
       print_summary(out, summary, settings, verdict, tracker, reading, stopped_by);
-      print_felt_levels(out, felt, settings.transducers);
+      print_felt_levels(out, felt, sensation_interval(settings.transducers));
       say_files();
     });
     attempts.finish();

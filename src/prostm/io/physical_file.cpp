@@ -80,7 +80,7 @@ Json felt_json(const PhysicalReport& report) {
   if (report.felt == nullptr) return nullptr;
   Json felt = {{"largest_um", 1e6 * report.felt->largest},
                {"intensity_um", 1e6 * report.felt->intensity},
-               {"sensation", sensation_to_json(report.sensation_level, *report.array)},
+               {"sensation", sensation_to_json(report.sensation_level, report.sensation_interval)},
                {"metrics", metrics_or_null(report.felt_metrics)},
                {"ghosts", nullptr},
                {"strongest_ghost", nullptr},

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "prostm/acoustics/array/array.hpp"
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/core/settings.hpp"
 #include "prostm/score/felt.hpp"
 
@@ -22,8 +23,9 @@ struct PhysicalReport {
   FocusAccuracy focus;
   const Metrics* envelope_metrics = nullptr;  ///< null without a target
   const Metrics* mean_metrics = nullptr;
-  const FeltField* felt = nullptr;        ///< null for loops whose perception is not computed
-  double sensation_level = 0.0;           ///< of `felt` [dB]; NaN without vibration
+  const FeltField* felt = nullptr;  ///< null for loops whose perception is not computed
+  double sensation_level = 0.0;     ///< of `felt` [dB]; NaN without vibration
+  SensationInterval sensation_interval;
   const Metrics* felt_metrics = nullptr;  ///< null without a target, too
   const Ghosts* ghosts = nullptr;         ///< null without a target, too
   std::vector<FeltHarmonic> spectrum;     ///< empty unless requested; also empty if `felt` is null

@@ -162,9 +162,9 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
   if (extras.metrics != nullptr) document["metrics"] = quantities_to_json(*extras.metrics);
   if (extras.quality != nullptr) {
     write_quality(*extras.quality, document);
-    if (extras.array != nullptr) {
+    if (extras.sensation) {
       document["sensation"] =
-          sensation_to_json(extras.quality->played.sensation_level, *extras.array);
+          sensation_to_json(extras.quality->played.sensation_level, *extras.sensation);
     }
   }
   if (extras.controls != nullptr) {

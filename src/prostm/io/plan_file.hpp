@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/plan/method.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/score/score.hpp"
@@ -14,7 +15,6 @@
 namespace prostm {
 
 struct PlayedPlan;
-struct TransducerArray;
 
 /// The share of power of each of a plan's simultaneous focal points.
 struct PowerShare {
@@ -42,9 +42,8 @@ struct PlanFileExtras {
   const PlanStats* stats = nullptr;  ///< written as "stage_us" and the counts if given
   const Metrics* metrics = nullptr;  ///< written as "metrics" if given, without their parameters
   const PlanQuality* quality = nullptr;  ///< written as "metrics" with all parameters, if given
-  /// With `quality`: the level of its percept is written as "sensation", with the interval for this
-  /// array.
-  const TransducerArray* array = nullptr;
+  /// With `quality`: the level of its percept is written as "sensation", with this interval.
+  std::optional<SensationInterval> sensation;
   const std::vector<Control>* controls = nullptr;
   const PowerShare* power = nullptr;                   ///< written as "power" if given
   const std::vector<std::string>* warnings = nullptr;  ///< written as "warnings" if given

@@ -8,13 +8,12 @@
 
 namespace prostm {
 
-/// The level and its interval [dB], and which amplitude of the array they are for; null for NaN.
-inline nlohmann::ordered_json sensation_to_json(double level, const TransducerArray& array) {
+/// The level and its interval [dB], and the source of the sound pressure; null for NaN.
+inline nlohmann::ordered_json sensation_to_json(double level, const SensationInterval& interval) {
   if (std::isnan(level)) return nullptr;
-  const SensationInterval interval = sensation_interval(array);
   return {{"level_db", level},
           {"interval_db", {level - interval.below, level + interval.above}},
-          {"amplitude", array.measured_amplitude > 0.0 ? "measured" : "nominal"}};
+          {"sound", name_of(interval.sound)}};
 }
 
 }  // namespace prostm

@@ -1,6 +1,7 @@
 #pragma once
 /// A plan: paths or positions of focal points, valid until the next plan.
 
+#include <algorithm>
 #include <boost/container/static_vector.hpp>
 #include <cmath>
 
@@ -72,5 +73,16 @@ double closed_length(const FocalPath& path);
 
 /// Moves every path and focus by `shift` in the plane [m].
 void translate(Plan& plan, const Vec2& shift);
+
+/// Returns the largest pressure of the paths and foci of a Plan or LiftedPlan; 0 without any.
+template <class AnyPlan>
+double largest_pressure(const AnyPlan& plan) {
+  double largest = 0.0;
+  for (const auto& path : plan.paths) {
+    for (const double p : path.pressure) largest = std::max(largest, p);
+  }
+  for (const auto& focus : plan.foci) largest = std::max(largest, focus.pressure);
+  return largest;
+}
 
 }  // namespace prostm

@@ -17,15 +17,6 @@ LiftedPlan lifted(const Plan& plan, const TargetFrame& frame, const EmitSettings
   return out;
 }
 
-double largest_pressure(const LiftedPlan& plan) {
-  double largest = 0.0;
-  for (const LiftedPath& path : plan.paths) {
-    for (const double p : path.pressure) largest = std::max(largest, p);
-  }
-  for (const LiftedFocus& focus : plan.foci) largest = std::max(largest, focus.pressure);
-  return largest;
-}
-
 LoopSamples loop_of(const LiftedPlan& plan, EmitSettings settings, double sample_rate) {
   if (settings.full_scale_pressure == 0.0) settings.full_scale_pressure = largest_pressure(plan);
   settings.foci = std::max(settings.foci, static_cast<int>(plan.paths.size() + plan.foci.size()));

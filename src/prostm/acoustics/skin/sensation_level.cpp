@@ -32,23 +32,32 @@ double measured_share(const TransducerArray& array) {
   return std::pow(array.measured_amplitude / array.amplitude, 2);
 }
 
-double sensation_level(double percept, const TransducerArray& array) {
+double sensation_level(double percept) {
   if (std::isnan(percept) || percept <= 0.0) return std::numeric_limits<double>::quiet_NaN();
-  return 20.0 * std::log10(measured_share(array) * percept / kTouchThreshold);
+  return 20.0 * std::log10(percept / kTouchThreshold);
+}
+
+double sensation_level(double percept, const TransducerArray& array) {
+  return sensation_level(measured_share(array) * percept);
+}
+
+SensationInterval sensation_interval() {
+  const double error = std::hypot(kThresholdError, 1.96 * kThresholdSpread);
+  return {error, error, SoundSource::Given};
 }
 
 SensationInterval sensation_interval(const TransducerArray& array) {
-  const double others = std::hypot(kThresholdError, 1.96 * kThresholdSpread);
+  const double others = sensation_interval().below;
   if (array.measured_amplitude > 0.0) {
     const double error = std::hypot(others, kMeasuredError);
-    return {error, error};
+    return {error, error, SoundSource::Measured};
   }
   return {std::hypot(others, pressure_level(array.amplitude, array.amplitude_low)),
-          std::hypot(others, pressure_level(array.amplitude_high, array.amplitude))};
+          std::hypot(others, pressure_level(array.amplitude_high, array.amplitude)),
+          SoundSource::Nominal};
 }
 
-std::string sensation_words(double level, const TransducerArray& array) {
-  const SensationInterval interval = sensation_interval(array);
+std::string sensation_words(double level, const SensationInterval& interval) {
   return "about " + whole(std::abs(level)) + " dB " + (level < 0.0 ? "below" : "above") +
          " the threshold of touch (" + whole(level - interval.below) + " to " +
          whole(level + interval.above) + " dB): " + meaning(level, interval);

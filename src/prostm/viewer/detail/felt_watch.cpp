@@ -14,6 +14,7 @@ PlanPercept percept_of(const PlanSnapshot& plan, int patch, WorkerPool& pool,
                        const std::stop_token& stop) {
   EmitSettings emit = plan.settings->emit;
   emit.full_scale_pressure = plan.full_scale_pressure;
+  emit.power_limit = power_limit(*plan.settings);
   try {
     return plan_percept(plan.plan, plan.target, patch, emit, plan.emission_rate,
                         plan.settings->transducers, pool, [&] { return !stop.stop_requested(); });
