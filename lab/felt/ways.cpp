@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "felt/chosen_paths.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/plan/lifted_plan.hpp"
@@ -105,6 +106,13 @@ std::vector<Way> ways(const TransducerArray& array) {
                             fewer, array));
     }
   }
+  PlanSettings quick = by_pressures;
+  quick.preset = Preset::Fast;
+  quick.felt_weight = 1.0;
+  for (const double weight : {0.0, 0.1, 0.3}) {
+    all.push_back(chosen_paths(fmt::format("1 to 4 paths, {:.1f}", weight), quick, weight, array));
+  }
+  all.push_back(chosen_paths("1 to 4 paths, moved", by_points, 0.1, array));
   all.push_back(pro_stm("paper-valid", paper, array));
   all.push_back(am("AM, 4 foci", 4, array));
   all.push_back(am("AM, 8 foci", 8, array));

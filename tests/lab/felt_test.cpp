@@ -7,11 +7,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "felt/chosen_paths.hpp"
 #include "felt/judge.hpp"
 #include "felt/kept.hpp"
 #include "felt/tables.hpp"
 #include "prostm/core/file/file.hpp"
+#include "prostm/felt/felt_tables.hpp"
 #include "prostm/fields/felt_fields.hpp"
+#include "prostm/plan/felt_plan.hpp"
 #include "prostm/score/physical.hpp"
 #include "prostm/score/plan_percept.hpp"
 #include "support/input_errors.hpp"
@@ -164,11 +167,30 @@ TEST(FeltJudge, CachesItsResults) {
   EXPECT_EQ(again.felt.overlap, first.felt.overlap);
   EXPECT_EQ(again.envelope.skill_8, first.envelope.skill_8);
   EXPECT_EQ(again.intensity, first.intensity);
+  EXPECT_EQ(again.strongest, first.strongest);
   EXPECT_EQ(again.readout, first.readout);
   EXPECT_EQ(again.skin, first.skin);
   EXPECT_EQ(again.disturbed, first.disturbed);
   write_file(path, "[1]");
   EXPECT_THAT(test::input_error([&] { Kept wrong(path); }), testing::HasSubstr(path));
+}
+
+TEST(FeltJudge, ShapeAndStrengthDecideTheNumberOfPaths) {
+  const TargetField ring = fields::felt_field(fields::FeltKind::Circle, 1, fields::Outline::Palm);
+  PlanSettings settings;
+  settings.preset = Preset::Fast;
+  settings.felt_weight = 1.0;
+  const auto planned = [&](double weight) {
+    return chosen_paths("", settings, weight, usx_array()).plan(ring);
+  };
+  const Plan shaped = planned(0.0), strong = planned(100.0);
+  EXPECT_EQ(strong.paths.size(), 1U);
+  EXPECT_GT(shaped.paths.size(), 1U);
+  const auto lack = [&](const Plan& plan) {
+    return felt_plan(plan, ring, sigma_on_skin(usx_array(), ring, settings.sigma), felt_skins())
+        .lack;
+  };
+  EXPECT_LT(lack(shaped), lack(strong));
 }
 
 TEST(FeltJudge, KeysDistinguishInputs) {
