@@ -16,7 +16,7 @@ def pytest_configure(config):
     config.addinivalue_line(
         "markers", "realtime: needs the speed or the little memory of a release build; left out under sanitizers")
     config.addinivalue_line(
-        "markers", "long: steps through seconds of a run as other tests do; left out under sanitizers")
+        "markers", "long: takes long under sanitizers, which leave it out: other tests run the same code")
 
 
 @pytest.fixture(scope="session")

@@ -511,6 +511,7 @@ def test_an_unreachable_full_scale_is_reported(prostm, field):
     np.testing.assert_allclose(np.array(twice["mean_pa"]), 4 * np.array(quiet["mean_pa"]), rtol=1e-3, atol=1e-6)
 
 
+@pytest.mark.long
 def test_widths_of_a_focus(prostm, field, tmp_path):
     rows = json.loads(prostm("field", "--widths", "--json", "-").stdout)["widths"]
     width = {(r["height_mm"], r["offset_mm"], round(r["tilt_deg"])): r for r in rows}

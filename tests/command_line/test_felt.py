@@ -70,6 +70,7 @@ def test_am_reports_it_too(prostm, settings):
     assert "felt it" not in prostm("plan", FIELD, "--settings", file).stdout
 
 
+@pytest.mark.long
 def test_with_an_array_the_verdict_is_about_the_felt_field(prostm, settings):
     file = settings("[plan]\nfelt_weight = 0.9\n")
     end = " (1 is perfect, 0 is no better than an even field)"
@@ -91,6 +92,7 @@ def test_a_pressure_field_that_loses_to_a_control_does_not_imply_that_the_felt_f
     assert warning.endswith(": its pressure hardly resembles the field")
 
 
+@pytest.mark.long
 def test_the_arrays_own_field_is_felt_more_like_the_target(prostm, settings):
     lack = {}
     for weight in (0, 0.9):
@@ -157,6 +159,7 @@ def test_a_plan_without_an_array_has_none(prostm):
     assert "sensation" not in json.loads(done.stdout) and not LEVEL.search(done.stderr)
 
 
+@pytest.mark.long
 def test_the_field_of_a_plan_has_the_same_level(prostm, tmp_path, planned):
     text = prostm("field", "plan.json", "--field", FIELD, "--json", "field.json").stdout
     felt = json.loads((tmp_path / "field.json").read_text())["felt"]
@@ -164,6 +167,7 @@ def test_the_field_of_a_plan_has_the_same_level(prostm, tmp_path, planned):
     assert level_in(text)[0] == level_in(planned[0])[0] and "at the nominal amplitude" in text
 
 
+@pytest.mark.long
 @pytest.mark.long
 def test_levels_follow_the_intensity(prostm, tmp_path, planned):
     def level(*options):
@@ -182,6 +186,7 @@ def test_levels_follow_the_intensity(prostm, tmp_path, planned):
     assert level("--full-scale-pa", "300") == pytest.approx(level("--full-scale-pa", "600") - 12.04, abs=0.1)
 
 
+@pytest.mark.long
 @pytest.mark.long
 def test_an_array_without_a_measurement_is_taken_as_nominal(prostm, tmp_path, planned):
     out = json.loads(prostm("solve", ROOT / "data" / "foci.json", "--json", "-").stdout)

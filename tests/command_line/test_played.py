@@ -73,6 +73,7 @@ def test_fade_times_below_forty_samples_are_rejected(refuses, field, tmp_path):
     refuses("plan", field, "--settings", toml, words=["emit.fade_time", "0.001 s", "40 samples"])
 
 
+@pytest.mark.long
 def test_field_and_plan_report_the_same_felt_field(prostm, field, tmp_path):
     prostm("plan", field, "--preset", "fast", "--array", "usx", "--json", "p.json")
     prostm("field", "p.json", "--field", field, "--array", "usx", "--json", "f.json")
