@@ -168,7 +168,6 @@ def test_the_field_of_a_plan_has_the_same_level(prostm, tmp_path, planned):
 
 
 @pytest.mark.long
-@pytest.mark.long
 def test_levels_follow_the_intensity(prostm, tmp_path, planned):
     def level(*options):
         out = prostm("field", "plan.json", *options, "--json", "-").stdout
@@ -186,7 +185,6 @@ def test_levels_follow_the_intensity(prostm, tmp_path, planned):
     assert level("--full-scale-pa", "300") == pytest.approx(level("--full-scale-pa", "600") - 12.04, abs=0.1)
 
 
-@pytest.mark.long
 @pytest.mark.long
 def test_an_array_without_a_measurement_is_taken_as_nominal(prostm, tmp_path, planned):
     out = json.loads(prostm("solve", ROOT / "data" / "foci.json", "--json", "-").stdout)

@@ -55,7 +55,7 @@ void add_experiments(Command app, Work& work) {
       command
           .add_flag("--variations", o->variations,
                     "simulate the paper's study in variations that could explain its result; takes "
-                    "a quarter of an hour")
+                    "up to an hour")
           .excludes(names, set, fit, without);
   add_json(command, o->files, o->json);
   command.option("--json").excludes(fit);
