@@ -126,7 +126,7 @@ void bind_planner(py::module_& m) {
             const std::lock_guard lock(self.mutex);
             self.planner.reset();
           },
-          "Forgets the previous plan, from which the presets best and fast continue.")
+          "Forgets the previous plan, from which the presets best, fast and felt continue.")
       .def("plan", &plan_paths,
            "Plans a TargetField, a TargetFrame (the paths are distributed over its patches, and\n"
            "no path spans two), or the file of a field, given by its name, with cell_mm,\n"

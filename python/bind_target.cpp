@@ -29,7 +29,7 @@ height: None (flat) or (rows, cols), the skin's distance from the plane along it
 X_DP: None (parallel to the array, 200 mm above its centre) or the plane's pose in the device's
     frame, a homogeneous (4, 4) matrix in metres.
 weight: None (1 everywhere) or (rows, cols), how much the error of each cell counts where the presets
-    best and fast fit a plan: finite and >= 0, above 0 somewhere on the skin; only ratios matter,
+    best, fast and felt fit a plan: finite and >= 0, above 0 somewhere on the skin; only ratios matter,
     and values off the skin do not count.
 
 A masked array's masked cells are no skin. Raises ValueError, TypeError.)";

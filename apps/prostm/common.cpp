@@ -329,6 +329,12 @@ std::string thousandths(double value) {
 
 std::string felt_words(const PipelineSettings& settings) {
   const bool am = settings.method == Method::Am;
+  if (!am && settings.plan.traits().chooses_by_percept) {
+    return fmt::format(
+        "number of paths and pressures chosen by what the model of the skin feels "
+        "(plan.strength_weight {:g}); nobody has felt it",
+        settings.plan.strength_weight);
+  }
   const double weight = am ? settings.am.felt_weight : settings.plan.felt_weight;
   if (weight == 0.0) return {};
   const char* chosen = am                          ? "pressures and phases"

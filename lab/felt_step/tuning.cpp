@@ -80,8 +80,11 @@ void measure(const TuningVariant& variant, const TargetField& field, const PlanS
     Plan plan;
     PlanStats stats;
     const StageTimer timer;
-    planner.plan_patch(target, maximum, settings.gain * maximum, 0, settings.paths, 0.0, true, plan,
-                       stats);
+    planner.plan_patch({.target = target,
+                        .maximum = maximum,
+                        .full_scale = settings.gain * maximum,
+                        .paths = settings.paths},
+                       plan, stats);
     (round == 0 ? costs.ms_first : costs.ms_second).add(1e3 * timer.seconds());
     const double lack = felt_plan(plan, target, settings.sigma, std::span(&skin, 1)).lack;
     (round == 0 ? costs.lack_first : costs.lack_second).add(lack);

@@ -15,7 +15,7 @@
 #include "planner/sequences.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/plan/detail/fit/descent.hpp"
-#include "prostm/plan/detail/fit/fit_planner.hpp"
+#include "prostm/plan/detail/fit/fit_settings.hpp"
 #include "prostm/plan/detail/fit/initial_loops.hpp"
 #include "prostm/plan/detail/fit/raster/cell_tiles.hpp"
 #include "prostm/plan/detail/paper/refine.hpp"

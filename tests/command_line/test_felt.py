@@ -46,7 +46,8 @@ def test_the_weight_is_off_by_default_and_exists_for_both_methods(prostm):
     assert "loop_ms" not in plan_of(prostm)
 
 
-@pytest.mark.parametrize("points, chosen", [("false", "pressures"), ("true", "points and pressures")])
+@pytest.mark.parametrize("points, chosen", [("false", "pressures"), pytest.param("true", "points and pressures",
+                                                                                marks=pytest.mark.long)])
 def test_one_line_reports_the_optimisation_and_that_it_is_untested_on_people(prostm, settings, points, chosen):
     file = settings(f"[plan]\nfelt_weight = 0.9\nfelt_points = {points}\n")
     line = line_with(prostm("plan", FIELD, "--settings", file).stdout, "nobody has felt it")
@@ -59,6 +60,16 @@ def test_one_line_reports_the_optimisation_and_that_it_is_untested_on_people(pro
         assert laps == pytest.approx(round(laps), abs=1e-9) and path["speed_m_s"] <= 7 * (1 + 1e-9)
     assert plan["settings"]["plan"]["felt_weight"] == 0.9
     assert plan["paths"] == plan_of(prostm, "--settings", file)["paths"]
+
+
+def test_the_preset_reports_what_it_chose(prostm, settings):
+    text = prostm("plan", FIELD, "--preset", "felt").stdout
+    plan = plan_of(prostm, "--preset", "felt")
+    assert line_with(text, "nobody has felt it") == (
+        f"  in step: all paths come round together every {plan['loop_ms']:.1f} ms; number of paths and pressures chosen "
+        "by what the model of the skin feels (plan.strength_weight 0.1); nobody has felt it")
+    stronger = plan_of(prostm, "--preset", "felt", "--settings", settings("[plan]\nstrength_weight = 5\n"))
+    assert len(stronger["paths"]) == 1 <= len(plan["paths"]) <= 4
 
 
 def test_am_reports_it_too(prostm, settings):

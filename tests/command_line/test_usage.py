@@ -63,7 +63,7 @@ from test_bad_input import changed, hand_lines
      "t.txt names no pose file; it must end in .json, as --tracker takes it"),
     (["run", "--json", "--view"], "--json needs the name of a file, and --view is an option"),
     (["run", "--preset", "bst"],
-     '--preset "bst" is unknown: it must be paper, paper-valid, best or fast; did you mean "best"?'),
+     '--preset "bst" is unknown: it must be paper, paper-valid, best, fast or felt; did you mean "best"?'),
     (["run", "--switch", "foo"], '--switch "foo" is unknown: it must be lap or now'),
     (["run", "--budget-ms", "-1"], "--budget-ms = -1 ms must be between 0 and 60000 ms"),
     (["plan", "foci.json", "--paths", "9"], "--paths = 9 must be between 1 and 8"),

@@ -159,18 +159,21 @@ TargetFrame dome(Random& random) {
 
 TEST(PlayedPlan, PlansOfEveryPresetHaveThePlayedPeriods) {
   Random random(33);
-  constexpr std::array kPresets = {Preset::Paper, Preset::PaperValid, Preset::Best, Preset::Fast};
-  for (int round = 0; round < 40; ++round) {
+  constexpr std::array kPresets = {Preset::Paper, Preset::PaperValid, Preset::Best, Preset::Fast,
+                                   Preset::Felt};
+  for (int round = 0; round < 50; ++round) {
     const TargetFrame frame = dome(random);
     PlanSettings settings;
-    settings.preset = kPresets[static_cast<std::size_t>(round % 4)];
-    settings.paths = 1 + (round / 4) % 4;
+    settings.preset = kPresets[static_cast<std::size_t>(round % 5)];
+    settings.paths = 1 + (round / 5) % 4;
     settings.speed = round % 7 == 0 ? kMaxFocusSpeed : random.uniform(1.0, kMaxFocusSpeed);
     settings.draw_rate = settings.speed / random.uniform(0.02, 0.2);
-    if (round % 4 >= 2 && round % 3 == 0) settings.felt_weight = 0.9;
+    const PresetTraits& traits = settings.traits();
+    if (traits.takes_felt_weight() && round % 3 == 0) settings.felt_weight = 0.9;
     SCOPED_TRACE(testing::Message() << name_of(settings.preset) << ", " << settings.speed
                                     << " m/s, felt " << settings.felt_weight);
-    if (settings.felt_weight > 0.0) settings.draw_rate = std::min(settings.draw_rate, 400.0);
+    if (traits.chooses_by_percept || settings.felt_weight > 0.0)
+      settings.draw_rate = std::min(settings.draw_rate, 400.0);
     Planner planner(settings, frame.patches[0].size());
     Plan plan;
     PlanStats stats;

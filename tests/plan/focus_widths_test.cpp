@@ -72,7 +72,7 @@ TEST(FocusWidths, OfATargetAreThoseAtItsPressure) {
 
 TEST(FocusWidths, GiveThePlansOfTheirSigma) {
   const TargetField field = fields::make(fields::Pattern::FourPlumes, 20, 40);
-  for (const Preset preset : {Preset::Best, Preset::Fast, Preset::PaperValid}) {
+  for (const Preset preset : {Preset::Best, Preset::Fast, Preset::Felt, Preset::PaperValid}) {
     PlanSettings with, without;
     with.preset = without.preset = preset;
     with.widths = constant(5e-3);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "prostm/plan/detail/fit/descent.hpp"
-#include "prostm/plan/detail/fit/fit_planner.hpp"
+#include "prostm/plan/detail/fit/fit_settings.hpp"
 
 namespace prostm::test {
 

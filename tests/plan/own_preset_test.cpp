@@ -66,10 +66,12 @@ TEST(OwnPreset, AcceptsTheSettingsOfItsTraits) {
 TEST(Presets, AreListedByTheirTraits) {
   EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.takes_budget; }), "preset best");
   EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.is_fitted(); }),
+            "presets best, fast, and felt");
+  EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.takes_felt_weight(); }),
             "presets best and fast");
   EXPECT_EQ(presets_with([](const PresetTraits&) { return true; }),
-            "presets paper, paper-valid, best, and fast");
-  EXPECT_EQ(preset_choices(), "paper, paper-valid, best (default), or fast");
+            "presets paper, paper-valid, best, fast, and felt");
+  EXPECT_EQ(preset_choices(), "paper, paper-valid, best (default), fast, or felt");
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ def assert_same_plan(result, document):
     assert {name: stats[name] for name in document["violations"]} == document["violations"]
 
 
-@pytest.mark.parametrize("preset", ["paper", "paper-valid", "best", "fast"])
+@pytest.mark.parametrize("preset", ["paper", "paper-valid", "best", "fast", "felt"])
 def test_an_array_is_planned_like_its_file(program, tmp_path, pressure, preset):
     np.save(tmp_path / "field.npy", pressure)
     program("plan", tmp_path / "field.npy", "--cell-mm", 5, "--preset", preset, "--json", tmp_path / "plan.json")

@@ -104,7 +104,7 @@ def test_settings_are_documented_with_their_bounds():
     text = prostm.PlanSettings.__doc__
     assert "  paths = 4; 1 to 8: largest number of paths" in text
     assert "  speed = 7.0; 0.1 to 8 m/s: " in text
-    assert "  preset = 'best'; paper, paper-valid, best or fast: " in text
+    assert "  preset = 'best'; paper, paper-valid, best, fast or felt: " in text
     assert "  seed = 1; 0 to 2147483647: " in text
     assert not re.search(r"\d\.0 to|to \d+\.0\b", text)
 

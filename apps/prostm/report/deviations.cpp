@@ -40,7 +40,7 @@ constexpr Deviation kDeviations[] = {
      "paths move less from update to update, and new contacts are still found",
      "planner-fit.md, From plan to plan"},
     {"length on uneven skin", "measured in the plane",
-     "speed on the skin; best and fast bound the length there, too",
+     "speed on the skin; best, fast and felt bound the length there, too",
      "a lap on curved skin takes longer than its plane says", "(E1)"},
     {"the fall-off of a focal point", "σ = 8.6 mm, the wavelength",
      "8.6 mm wherever the paper is compared; otherwise best takes the width of the array's own "

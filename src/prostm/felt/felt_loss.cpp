@@ -40,6 +40,7 @@ struct FeltLoss<Real>::Impl {
   struct Skin {
     Vector percept;
     Real log_energy = 0, kept = 0;  // log energy of this loop, and the one to keep
+    Real lack = 0;                  // (W2), without its part for e
   };
 
   Impl(std::size_t skins, std::size_t most_cells, std::size_t sources, const FeltWeights& w,
@@ -157,7 +158,8 @@ Real FeltLoss<Real>::Impl::evaluate(std::size_t number, std::optional<Real> keep
   const Real louder = (s.log_energy - s.kept) / 2;
   const Real missing = std::max(-louder - static_cast<Real>(FeltWeights::kSlack), Real(0));
   const Real wanted = loudness + 2 * quiet * missing;
-  Real value = lack.of(root, fine, d_root) - loudness * louder + quiet * missing * missing;
+  s.lack = lack.of(root, fine, d_root);
+  Real value = s.lack - loudness * louder + quiet * missing * missing;
   d_energy.setZero();
   if (energy_share > 0) value += energy_share * lack.of(e, Real(0), d_energy);
   const Real by_whole = least * (d_root.array() / root.array()).sum() - wanted / whole;
@@ -251,6 +253,13 @@ RenderLack<Real>& FeltLoss<Real>::rendering() {
 template <class Real>
 std::span<const Real> FeltLoss<Real>::percept(std::size_t skin) const {
   return {impl_->skin[skin].percept.data(), impl_->cells.size()};
+}
+
+template <class Real>
+Real FeltLoss<Real>::lack() const {
+  Real sum = 0;
+  for (const auto& s : impl_->skin) sum += s.lack;
+  return sum / static_cast<Real>(impl_->skin.size());
 }
 
 template <class Real>

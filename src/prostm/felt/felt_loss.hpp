@@ -69,6 +69,8 @@ class FeltLoss {
   RenderLack<Real>& rendering();
   /// Percepts √e of the last evaluate() in each cell, by skin [µm per unit of amplitude].
   std::span<const Real> percept(std::size_t skin) const;
+  /// Lack of the last evaluate(): (W2) without its part for e, the mean over the skins.
+  Real lack() const;
   /// Loudness of the last evaluate(): the geometric mean over the skins of the rms percept.
   Real loudness() const;
 

@@ -21,9 +21,10 @@ std::vector<SkinSettings> felt_skins() {
   return skins;
 }
 
-FeltTables::FeltTables() {
-  for (const SkinSettings& skin : felt_skins()) models_.emplace_back(skin);
-  for (Entry& entry : entries_) entry.skins.resize(kFeltSkins);
+FeltTables::FeltTables(std::size_t skins) {
+  const std::vector<SkinSettings> settings = felt_skins();
+  for (std::size_t s = 0; s < skins; ++s) models_.emplace_back(settings[s]);
+  for (Entry& entry : entries_) entry.skins.resize(skins);
 }
 
 const FeltSkins<float>& FeltTables::of(double sigma, double period) {
@@ -35,7 +36,7 @@ const FeltSkins<float>& FeltTables::of(double sigma, double period) {
   oldest_ = (oldest_ + 1) % entries_.size();
   made.sigma = rounded;
   made.period = period;
-  for (std::size_t s = 0; s < kFeltSkins; ++s)
+  for (std::size_t s = 0; s < models_.size(); ++s)
     maker_.make(models_[s], rounded, period, made.skins[s]);
   return made.skins;
 }

@@ -13,15 +13,17 @@ namespace prostm {
 
 /// Number of skins that plans are fitted to.
 inline constexpr std::size_t kFeltSkins = 3;
+inline constexpr std::size_t kNominalSkin = 0;  ///< index of the nominal skin among them
 /// Returns these skins: nominal, with 0.7 times, and with 1.3 times the nominal wave speed.
 std::vector<SkinSettings> felt_skins();
 
 /// Cache of the last few tables. Only construction allocates.
 class FeltTables {
  public:
-  FeltTables();
+  /// @param skins number of skins, the first of felt_skins(), 1 to kFeltSkins.
+  explicit FeltTables(std::size_t skins = kFeltSkins);
 
-  /// Returns the tables of felt_skins() for a focus and a period [s]. They stay valid until the
+  /// Returns the tables of these skins for a focus and a period [s]. They stay valid until the
   /// cache is filled with others. @param sigma σ of the focus [m], rounded to 0.2 mm.
   const FeltSkins<float>& of(double sigma, double period);
 

@@ -12,11 +12,11 @@ namespace prostm {
 
 namespace {
 
-/// Lists the settings of presets best and fast.
+/// Lists the settings of presets best, fast and felt.
 template <class Settings, class Visitor>
 void list_fit(Settings& s, Visitor& v) {
   constexpr double kPoints = kMaxPathPoints;
-  v.field({"least_length", "m", 0.005, 1, "least length of a path of presets best and fast"},
+  v.field({"least_length", "m", 0.005, 1, "least length of a path of presets best, fast and felt"},
           s.least_length);
   v.field({"fit_coverage", "", 0, 100, "weight of pressure that no path reaches"}, s.fit_coverage);
   v.field({"fit_length", "", 0, 1000, "weight of length and uneven points"}, s.fit_length);
@@ -28,6 +28,9 @@ void list_fit(Settings& s, Visitor& v) {
   v.field({.name = "felt_points",
            .help = "with felt_weight: whether to move the points of paths by the percept, too"},
           s.felt_points);
+  v.field({"strength_weight", "", 0, 10,
+           "preset felt: weight of a stronger percept against a truer shape; 0: shape alone"},
+          s.strength_weight);
   v.field({"fit_samples", "", 8, kPoints,
            "points per path in the search of preset best; plans have twice as many, up to 64"},
           s.fit_samples);
@@ -39,8 +42,8 @@ void list_fit(Settings& s, Visitor& v) {
   v.field({"budget", "s", 0, 60, "time after which best tries nothing more; 0: only counts apply"},
           s.budget);
   v.field({"full_scale_pressure", "", 0, 1e300,
-           "rendered pressure at full output that best and "
-           "fast assume; 0: gain times the largest"},
+           "rendered pressure at full output that best, "
+           "fast and felt assume; 0: gain times the largest"},
           s.full_scale_pressure);
 }
 
@@ -120,9 +123,12 @@ void validate(const PlanSettings& s) {
   // a loop may be as short as half a lap of the longest path, and must satisfy is_loop()
   if (s.felt_weight > 0.0)
     require_between("draw_rate with felt_weight", s.draw_rate, 1.0, 500.0, "Hz");
-  if (s.felt_weight > 0.0 && !traits.is_fitted()) {
-    throw std::invalid_argument("felt_weight is for " +
-                                presets_with([](const PresetTraits& t) { return t.is_fitted(); }) +
+  if (traits.chooses_by_percept)
+    require_between("draw_rate with preset felt", s.draw_rate, 1.0, 500.0, "Hz");
+  if (s.felt_weight > 0.0 && !traits.takes_felt_weight()) {
+    throw std::invalid_argument("felt_weight is for " + presets_with([](const PresetTraits& t) {
+                                  return t.takes_felt_weight();
+                                }) +
                                 ", not " + std::string(traits.name));
   }
 }

@@ -35,7 +35,7 @@ struct PlanSettings {
   int lloyd_iterations = 100;   ///< maximum iterations of the k-means
   int refine_iterations = 200;  ///< maximum number of gradient steps
   int seed = 1;                 ///< seed of the clustering
-  // presets best and fast
+  // presets best, fast and felt
   double least_length = 0.035;  ///< least length of a path [m]; L if that is shorter
   double fit_coverage = 0.12;   ///< weight of pressure that no path reaches, (P12)
   double fit_length = 1.0;      ///< weight of length and uneven samples, (P13)
@@ -44,7 +44,9 @@ struct PlanSettings {
   /// Weight of the percept when pressures are chosen, 0 to 1, (P19); the field (P10) has the
   /// rest. 0: pressures are those of the fit.
   double felt_weight = 0.0;
-  bool felt_points = false;      ///< whether to move the points of paths by the percept, too
+  bool felt_points = false;  ///< whether to move the points of paths by the percept, too
+  /// For preset felt: lack of felt shape (W3) that a strength 2.7 times as high is worth, (P25).
+  double strength_weight = 0.1;
   int fit_samples = 28;          ///< N in the search of best, 8..64; plans have 2 N, at most 64
   double fit_hysteresis = 0.03;  ///< share of the cost that a new set of paths must save
   int fit_starts = 4;            ///< sets of paths tried if there is no previous plan
@@ -52,14 +54,14 @@ struct PlanSettings {
   /// Time after which `best` tries nothing more [s]; 0: only the counts apply, and the same input
   /// gives the same plan.
   double budget = 0.0;
-  /// Rendered pressure at full output that presets best and fast assume [unit of the target]; 0: γ
-  /// of the longest path times the frame's maximum.
+  /// Rendered pressure at full output that presets best, fast and felt assume [unit of the target];
+  /// 0: γ of the longest path times the frame's maximum.
   double full_scale_pressure = 0.0;
   /// Properties of the emission, not fields in files: the time of a rise from silence to full
   /// output [s], and the share of full output's pressure below which it is silent.
   double rise_time = 1e-3, silent_below = 0.01;
-  /// For presets best and fast: σ of each target by its position and tilt; if empty, `sigma`. Not
-  /// stored in files.
+  /// For presets best, fast and felt: σ of each target by its position and tilt; if empty, `sigma`.
+  /// Not stored in files.
   FocusWidths widths;
   /// Custom preset, used instead of `preset` if not null; must outlive the planner. Not stored in
   /// files; these contain `preset`.

@@ -13,8 +13,8 @@ namespace prostm {
 
 enum class PlanStatus : std::uint8_t {
   Planned,       ///< `plan` holds 1..paths paths
-  EmptyTarget,   ///< no skin, or no pressure on it (for best and fast: none of positive weight):
-                 ///< `plan` holds no path
+  EmptyTarget,   ///< no skin, or no pressure on it (for best, fast and felt: none of positive
+                 ///< weight): `plan` holds no path
   InvalidTarget  ///< a pressure is not finite, negative or above 1e300, weights are not as
                  ///< validate() requires, the cell is not 1 µm to 1 m wide, sizes disagree, or the
                  ///< raster exceeds the capacity: `plan` holds no path

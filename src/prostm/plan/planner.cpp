@@ -6,6 +6,7 @@
 
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/plan/clustering.hpp"
+#include "prostm/plan/detail/fit/felt/felt_planner.hpp"
 #include "prostm/plan/detail/fit/fit_planner.hpp"
 #include "prostm/plan/detail/fit/raster/cell_weights.hpp"
 #include "prostm/plan/detail/paper/refine.hpp"
@@ -22,10 +23,17 @@ using namespace planning;
 namespace {
 
 constexpr double kLengthTolerance = 0.5e-3;  // tolerance of "longer than L" in the statistics [m]
+constexpr double kFieldPeriod = 0.04;        // assumed time between fields that have no time [s]
 
 /// Returns whether there is pressure of positive weight. @param maximum from highest_pressure().
 bool has_counted_pressure(const TargetField& target, double maximum) {
   return maximum > 0.0 && (target.weight.empty() || CellWeights(target, maximum).any_pressure());
+}
+
+std::unique_ptr<PatchPlanner> make_fit(const PlanSettings& settings, std::size_t max_cells) {
+  if (settings.traits().chooses_by_percept)
+    return std::make_unique<FeltPlanner>(settings, max_cells);
+  return std::make_unique<FitPlanner>(settings, max_cells);
 }
 
 }  // namespace
@@ -39,20 +47,22 @@ struct Planner::Scratch {
         refiner(CostSettings(s), s.paths, s.samples, s.refine_iterations) {
     x.reserve(static_cast<std::size_t>(s.paths) * static_cast<std::size_t>(s.samples));
     if (s.traits().is_fitted()) {
-      for (int patch = 0; patch < kMaxPatches; ++patch) fits.emplace_back(s, cells);
+      for (int patch = 0; patch < kMaxPatches; ++patch) fits.push_back(make_fit(s, cells));
     }
   }
 
   /// Appends at most `paths` paths for one patch to `plan` and adds to `stats` (all but the total).
   /// @param highest pressure of the frame.
   PlanStatus plan_patch(const TargetField& target, double highest, int patch, int paths,
-                        double budget, bool is_alone, Plan& plan, PlanStats& stats,
+                        double budget, bool is_alone, double time, Plan& plan, PlanStats& stats,
                         PlanTrace* trace);
   /// Rendered pressure at full output. @param highest pressure of the frame.
   double full_scale(double highest) const {
     return settings.full_scale_pressure > 0.0 ? settings.full_scale_pressure
                                               : settings.gain * highest;
   }
+  /// Returns the time of a target without one.
+  double next_time() { return fields++ * kFieldPeriod; }
   /// Whether there is anything to plan for. @param maximum the target's largest pressure.
   bool has_pressure(const TargetField& target, double maximum) const {
     return fits.empty() ? maximum > 0.0 : has_counted_pressure(target, maximum);
@@ -65,12 +75,13 @@ struct Planner::Scratch {
 
   PlanSettings settings;
   std::size_t max_cells;
+  int fields = 0;  // single fields planned
   PressureRaster raster;
   WeightedKMeans kmeans;
   Clusters clusters;
   DistanceTable distance;
   Refiner refiner;
-  std::vector<FitPlanner> fits;  // one for each patch, of a fitted preset
+  std::vector<std::unique_ptr<PatchPlanner>> fits;  // one for each patch, of a fitted preset
   // samples of the paths, one path after the other, heaviest first, relative to the origin [mm]
   std::vector<Vec2> x;
 };
@@ -158,20 +169,21 @@ void Planner::Scratch::append(const TargetField& target, int patch, double maxim
 }
 
 PlanStatus Planner::Scratch::plan_patch(const TargetField& target, double highest, int patch,
-                                        int paths, double budget, bool is_alone, Plan& plan,
-                                        PlanStats& stats, PlanTrace* trace) {
+                                        int paths, double budget, bool is_alone, double time,
+                                        Plan& plan, PlanStats& stats, PlanTrace* trace) {
   StageTimer timer;
   const double maximum = highest_pressure(target, max_cells);
   if (maximum < 0.0) return PlanStatus::InvalidTarget;
   if (!has_pressure(target, maximum)) {
-    if (!fits.empty()) fits[static_cast<std::size_t>(patch)].reset();
+    if (!fits.empty()) fits[static_cast<std::size_t>(patch)]->reset();
     return PlanStatus::EmptyTarget;
   }
   if (!fits.empty()) {
     if (trace != nullptr) *trace = {};
-    fits[static_cast<std::size_t>(patch)].plan_patch(target, maximum,
-                                                     full_scale(std::max(highest, maximum)), patch,
-                                                     paths, budget, is_alone, plan, stats);
+    fits[static_cast<std::size_t>(patch)]->plan_patch(
+        {target, maximum, full_scale(std::max(highest, maximum)), patch, paths, budget, is_alone,
+         time},
+        plan, stats);
     return PlanStatus::Planned;
   }
   collect_points(target, maximum);
@@ -216,7 +228,7 @@ PlanStatus Planner::plan(const TargetField& target, Plan& plan, PlanStats& stats
   stats = {};
   const PlanStatus status =
       scratch_->plan_patch(target, 0.0, 0, scratch_->settings.paths, scratch_->settings.budget,
-                           true, plan, stats, trace);
+                           true, scratch_->next_time(), plan, stats, trace);
   stats.total = timer.seconds();
   return status;
 }
@@ -243,18 +255,18 @@ PlanStatus Planner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats)
   for (std::size_t i = 0; i < frame.patches.size(); ++i) {
     if (share[i] == 0 && pressure[i] > 0.0) continue;
     scratch_->plan_patch(frame.patches[i], highest, static_cast<int>(i), share[i], budget,
-                         planned < 2, plan, stats, nullptr);
+                         planned < 2, frame.time, plan, stats, nullptr);
   }
   // a hand that has left starts without a previous plan when it comes back
   for (std::size_t i = frame.patches.size(); i < scratch_->fits.size(); ++i) {
-    scratch_->fits[i].reset();
+    scratch_->fits[i]->reset();
   }
   stats.total = timer.seconds();
   return plan.paths.empty() ? PlanStatus::EmptyTarget : PlanStatus::Planned;
 }
 
 void Planner::reset() noexcept {
-  for (FitPlanner& fit : scratch_->fits) fit.reset();
+  for (const auto& fit : scratch_->fits) fit->reset();
 }
 
 }  // namespace prostm

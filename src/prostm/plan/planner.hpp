@@ -26,8 +26,8 @@ class Planner {
   const PlanSettings& settings() const;
 
   /// Plans paths for one patch; `plan` is overwritten, and valid in every case. Throws nothing, and
-  /// allocates only with a trace. The presets best and fast continue from the previous plan, if
-  /// any; call reset() first for a plan that depends on the target only.
+  /// allocates only with a trace. The presets best, fast and felt continue from the previous plan,
+  /// if any; call reset() first for a plan that depends on the target only.
   PlanStatus plan(const TargetField& target, Plan& plan, PlanStats& stats,
                   PlanTrace* trace = nullptr) noexcept;
 

@@ -22,23 +22,27 @@ struct PresetTraits {
   std::string_view name;   ///< in files, on the command line and in Python
   std::string_view title;  ///< on the page
   PathSearch search = PathSearch::Paper;
-  bool makes_valid = false;        ///< repairs or drops invalid paths (paper's method only)
-  bool takes_budget = false;       ///< PlanSettings::budget bounds its time
-  bool moves_fit_samples = false;  ///< moves fit_samples points of a path, not `samples`
-  bool halves_segments = false;    ///< plans have two pieces for each segment that is moved
+  bool makes_valid = false;         ///< repairs or drops invalid paths (paper's method only)
+  bool takes_budget = false;        ///< PlanSettings::budget bounds its time
+  bool moves_fit_samples = false;   ///< moves fit_samples points of a path, not `samples`
+  bool halves_segments = false;     ///< plans have two pieces for each segment that is moved
+  bool chooses_by_percept = false;  ///< chooses number of paths and pressures by what is felt
 
   /// Returns whether paths are fitted to the field: settings fit_… and felt_… apply, plans are
   /// always valid, and PlanSettings::widths is used if not empty.
   constexpr bool is_fitted() const { return search != PathSearch::Paper; }
+  /// Returns whether PlanSettings::felt_weight applies.
+  constexpr bool takes_felt_weight() const { return is_fitted() && !chooses_by_percept; }
 };
 
 /// `paper`: exactly the paper's method; its violations of length and crossing are reported.
 /// `paper-valid`: the same, then repaired to be valid. `best`: the paths whose field is nearest to
-/// the target, always valid. `fast`: one short search of the same kind.
-enum class Preset : std::uint8_t { Paper, PaperValid, Best, Fast };
+/// the target, always valid. `fast`: one short search of the same kind. `felt`: such a search for
+/// each number of paths, of which the one is kept that is felt best.
+enum class Preset : std::uint8_t { Paper, PaperValid, Best, Fast, Felt };
 
 /// In the order of the enumerators.
-inline constexpr std::array<PresetTraits, 4> kPresetTraits = {{
+inline constexpr std::array<PresetTraits, 5> kPresetTraits = {{
     {.name = "paper", .title = "Paper"},
     {.name = "paper-valid", .title = "Paper, made valid", .makes_valid = true},
     {.name = "best",
@@ -48,6 +52,7 @@ inline constexpr std::array<PresetTraits, 4> kPresetTraits = {{
      .moves_fit_samples = true,
      .halves_segments = true},
     {.name = "fast", .title = "Fast", .search = PathSearch::Short},
+    {.name = "felt", .title = "Felt", .search = PathSearch::Short, .chooses_by_percept = true},
 }};
 
 inline constexpr Preset kDefaultPreset = Preset::Best;

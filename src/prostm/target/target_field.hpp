@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxFieldCells = 1'000'000;
 /// any non-negative quantity (a plan scales with it); `height` is the skin's distance from the
 /// plane along its normal, positive away from the array, so that a point x of the plane is lifted
 /// to X_DP · (x, height); `weight` is the weight of a cell's error when a plan is fitted to the
-/// field (presets `best` and `fast`); only the ratios of the weights have an effect.
+/// field (presets `best`, `fast` and `felt`); only the ratios of the weights have an effect.
 struct TargetField {
   int rows = 0, cols = 0;
   double cell = 0.0;               ///< edge of a cell [m]

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "prostm/plan/detail/fit/fit_settings.hpp"
 #include "prostm/plan/detail/pressure_raster.hpp"
 #include "prostm/plan/detail/validity.hpp"
 #include "prostm/plan/lifted_plan.hpp"
@@ -12,50 +13,17 @@
 namespace prostm::planning {
 namespace {
 
-constexpr double kSpacingShare = 0.9;   // spacing that valid paths keep, over σ
-constexpr double kAlongShare = 2.0;     // over σ: samples nearer along a path may be closer
-constexpr double kRounding = 1e-4;      // relative margin of bounds for single-precision rounding
-constexpr double kFastWidth = 6.0;      // width of the cells of preset fast [mm]
-constexpr double kFastFineWidth = 4.0;  // width of the cells for its pressures [mm]
-constexpr int kFastEvaluations = 2, kFastWarmEvaluations = 4, kFastSmallEvaluations = 4;
-constexpr int kFastFinePaths = 1;  // most paths of a target that is small enough for finer cells
-constexpr int kFastRegionPasses = 3, kFastStopPasses = 2;
-constexpr int kMendRounds = 8;      // maximum number of rounds, on uneven skin
-constexpr double kMendStep = 2e-3;  // relative reduction of a too long path's bound per round
-constexpr int kMostHalvings = 60;   // halvings that make a circle short enough on any skin
+constexpr double kSpacingShare = 0.9;  // spacing that valid paths keep, over σ
+constexpr double kAlongShare = 2.0;    // over σ: samples nearer along a path may be closer
+constexpr double kRounding = 1e-4;     // relative margin of bounds for single-precision rounding
+constexpr int kMendRounds = 8;         // maximum number of rounds, on uneven skin
+constexpr double kMendStep = 2e-3;     // relative reduction of a too long path's bound per round
+constexpr int kMostHalvings = 60;      // halvings that make a circle short enough on any skin
 // Bound of the ratios of full output to pressure and of pressure to full output, so that single
 // precision resolves both. Higher output counts as unlimited; higher pressure is clamped.
 constexpr double kAmple = 1e4;
 constexpr int kMoveRounds = 4;         // rounds of moving points and mending paths
 constexpr float kMovedBending = 0.1F;  // factor on the weight of (P15) while points move
-constexpr int kPieces = 2;             // pieces per segment in plans of preset best
-
-SearchSettings search_settings(const PlanSettings& s) {
-  SearchSettings search;
-  search.samples = s.moved_samples();
-  search.weak = s.weak_pressure;
-  search.seed = static_cast<std::uint64_t>(s.seed);
-  search.hysteresis = s.fit_hysteresis;
-  if (s.traits().search == PathSearch::Short) {
-    search.starts = 1;
-    search.kicks = search.warm_starts = 0;
-    search.fewer_evaluations = 0;
-    search.start_evaluations = kFastEvaluations;
-    search.small_evaluations = kFastSmallEvaluations;
-    search.warm_evaluations = kFastWarmEvaluations;
-    search.final_evaluations = 0;
-    search.region_passes = kFastRegionPasses;
-    search.stop_passes = kFastStopPasses;
-    search.coarse_width = kFastWidth;
-    search.fine_width = kFastFineWidth;
-    search.fine_paths = kFastFinePaths;
-    search.counts_steepness = false;
-    return search;
-  }
-  search.starts = s.fit_starts;
-  search.kicks = s.fit_kicks;
-  return search;
-}
 
 /// Returns whether all values have the same bits; much faster than comparing them as numbers.
 bool is_constant(const std::vector<double>& values) {
@@ -63,33 +31,14 @@ bool is_constant(const std::vector<double>& values) {
          std::memcmp(values.data(), values.data() + 1, (values.size() - 1) * sizeof(double)) == 0;
 }
 
-/// Number of pieces into which a plan divides each segment of the search. The pressure is linear
-/// between samples, so it follows the field better the closer they lie.
-int pieces_of(const PlanSettings& s) {
-  return s.traits().halves_segments && kPieces * s.moved_samples() <= kMaxPathPoints ? kPieces : 1;
-}
-
 }  // namespace
-
-FitSettings fit_settings(const PlanSettings& s) {
-  FitSettings fit;
-  fit.reconstruction.sigma = static_cast<float>(kMmPerMetre * s.sigma);
-  fit.reconstruction.weight_coverage = static_cast<float>(s.fit_coverage);
-  fit.shape.weight_length = static_cast<float>(s.fit_length);
-  fit.shape.weight_spacing = static_cast<float>(s.fit_spacing);
-  fit.shape.weight_bending = static_cast<float>(s.fit_bending);
-  fit.shape.spacing = static_cast<float>(kMmPerMetre * s.sigma);
-  fit.shape.least_length =
-      static_cast<float>(kMmPerMetre * std::min(s.least_length, s.max_length()));
-  fit.shape.most_length.fill(static_cast<float>(kMmPerMetre * s.max_length()));
-  return fit;
-}
 
 FitPlanner::FitPlanner(const PlanSettings& settings, std::size_t max_cells,
                        const FeltTuning& tuning)
     : settings_(settings),
       search_(max_cells, fit_settings(settings), search_settings(settings)),
       felt_(settings.felt_weight > 0.0 ? std::make_unique<FeltStep>(settings, tuning) : nullptr),
+      in_step_(felt_ || settings.traits().chooses_by_percept),
       pieces_(pieces_of(settings)) {}
 
 /// Bounds of (P18) for a path whose rendered pressure is `gain` times the effective one.
@@ -275,7 +224,7 @@ void FitPlanner::take_plan(const TargetField& target, int paths) {
     length_[place] = loop_length(loop) / kMmPerMetre * factor_[place];
     period_[place] = length_[place] / settings_.path_speed();
   }
-  if (felt_) step_together(paths);
+  if (in_step_) step_together(paths);
   for (int k = 0; k < paths; ++k) {
     const auto place = static_cast<std::size_t>(k);
     const double period = period_[place];
@@ -369,28 +318,28 @@ void FitPlanner::move_felt(const TargetField& target, PlanStats& stats) {
   }
 }
 
-/// Chooses the pressures of plan_ by its percept, within the limits of the emission.
-void FitPlanner::choose_felt(PlanStats& stats) {
+void FitPlanner::choose_felt(FeltStep& step, PlanStats& stats) {
   stats.cost_evaluations +=
-      felt_->choose_pressures(plan_.loops, starts_, loop_, settings_.felt_points ? 1 : pieces_,
-                              bounds_, plan_.reconstruction.pressure);
+      step.choose_pressures(plan_.loops, starts_, loop_, settings_.felt_points ? 1 : pieces_,
+                            bounds_, plan_.reconstruction.pressure);
   make_playable(plan_.loops, bounds_, plan_.reconstruction.pressure);
 }
 
-void FitPlanner::append(const TargetField& target, int patch, Plan& plan, PlanStats& stats) {
+void FitPlanner::append(const PatchTask& task, Plan& plan, PlanStats& stats) {
   const int n = samples_, paths = plan_.loops.paths;
   for (int k = 0; k < paths; ++k) {
     const auto place = static_cast<std::size_t>(k);
     const LapStart start = starts_[place];
     FocalPath path;
-    path.patch = patch;
+    path.patch = task.patch;
     for (int i = 0; i < n; ++i) {
-      path.points.push_back(target.origin + plan_.loops.point(start.sample(i, n), k) / kMmPerMetre);
+      path.points.push_back(task.target.origin +
+                            plan_.loops.point(start.sample(i, n), k) / kMmPerMetre);
     }
     path.length = closed_length(path);
     const double on_skin = path.length * factor_[place];
-    path.period = felt_ ? period_[place] : on_skin / settings_.path_speed();
-    path.speed = felt_ ? on_skin / path.period : settings_.path_speed();
+    path.period = in_step_ ? period_[place] : on_skin / settings_.path_speed();
+    path.speed = in_step_ ? on_skin / path.period : settings_.path_speed();
     const double gain = settings_.gain_law().of(path.period);
     for (int i = 0; i < n; ++i) {
       const std::size_t node = plan_.loops.node(start.sample(i, n), k);
@@ -399,48 +348,61 @@ void FitPlanner::append(const TargetField& target, int patch, Plan& plan, PlanSt
     }
     plan.paths.push_back(path);
   }
-  plan.loop = felt_ ? loop_.period : 0.0;
+  plan.loop = in_step_ ? loop_.period : 0.0;
   last_period_ = plan.loop;
   stats.leaves += paths;
 }
 
-void FitPlanner::plan_patch(const TargetField& target, double maximum, double full_scale, int patch,
-                            int paths, double budget, bool is_alone, Plan& plan, PlanStats& stats) {
+void FitPlanner::start_from(const Loops& loops, const TargetField& target) {
+  reset();
+  phases_.forget();
+  fit_.loops = loops;
+  origin_ = target.origin;
+  has_previous_ = true;
+}
+
+void FitPlanner::find(const PatchTask& task, PlanStats& stats) {
   StageTimer timer;
-  full_scale_ = full_scale;
-  is_alone_ = is_alone;
-  rendered_ = std::min(maximum, kAmple * (full_scale / settings_.gain));
+  const TargetField& target = task.target;
+  full_scale_ = task.full_scale;
+  is_alone_ = task.is_alone;
+  rendered_ = std::min(task.maximum, kAmple * (full_scale_ / settings_.gain));
   search_.set_bounds(play_bounds(settings_.gain, settings_.path_speed()));
   is_flat_ = is_constant(target.height);
   if (!settings_.widths.empty()) {
     settings_.sigma = settings_.widths.on(target);
     search_.set_sigma(kMmPerMetre * settings_.sigma);
   }
-  search_.set_target(target, maximum, budget);
+  search_.set_target(target, task.maximum, task.budget);
   stats.init += timer.lap();
 
   move_to(target.origin);
-  const bool continues = has_previous_ && fit_.loops.paths <= paths;
+  const bool continues = has_previous_ && fit_.loops.paths <= task.paths;
   if (!continues) {
     phases_.forget();
     if (felt_) felt_->forget();
     last_period_ = 0.0;
   }
-  stats.cost_evaluations += search_.run(paths, continues, fit_);
+  stats.cost_evaluations += search_.run(task.paths, continues, fit_);
   stats.cost_evaluations += search_.finish(shape_of(target).most_length, fit_);
   stats.cost += static_cast<double>(fit_.cost);
-
-  const double start = timer.seconds();
+  ending_.restart();
   mend(target, stats);
   choose_starts();
-  if (felt_) {
-    felt_->set_target(target, maximum, settings_.sigma);
-    if (settings_.felt_points) move_felt(target, stats);
-    choose_felt(stats);
-  }
-  append(target, patch, plan, stats);
-  search_.learn_ending(timer.seconds() - start);
   has_previous_ = true;
+  stats.refine += timer.lap();
+}
+
+void FitPlanner::plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats) {
+  find(task, stats);
+  StageTimer timer;
+  if (felt_) {
+    felt_->set_target(task.target, task.maximum, settings_.sigma);
+    if (settings_.felt_points) move_felt(task.target, stats);
+    choose_felt(*felt_, stats);
+  }
+  append(task, plan, stats);
+  search_.learn_ending(ending_.seconds());
   stats.refine += timer.lap();
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "prostm/plan/detail/fit/felt/felt_step.hpp"
+#include "prostm/plan/detail/fit/patch_planner.hpp"
 #include "prostm/plan/detail/fit/phases.hpp"
 #include "prostm/plan/detail/fit/search.hpp"
 #include "prostm/plan/detail/fit/spacing.hpp"
@@ -15,30 +16,34 @@
 
 namespace prostm::planning {
 
-/// Settings of the cost that the presets `fast` and `best` minimise.
-FitSettings fit_settings(const PlanSettings& settings);
-
 /// Finds the paths whose field (Eq. 1) is nearest to the target, (P11)–(P15), and the starts of
 /// their focal points, (P16). Keeps the last plan, so that the next can start from it.
-/// plan_patch() allocates and throws nothing.
-class FitPlanner {
+class FitPlanner : public PatchPlanner {
  public:
   FitPlanner(const PlanSettings& settings, std::size_t max_cells, const FeltTuning& tuning = {});
 
-  /// Forgets the last plan.
-  void reset() {
+  void reset() override {
     has_previous_ = false;
     last_period_ = 0.0;
     if (felt_) felt_->forget();
   }
-  /// Appends at most `paths` paths to `plan` and adds to `stats` (all but the total).
-  /// @param full_scale rendered pressure at full output [unit of the target].
-  /// @param budget time limit [s]; 0: only the counts of the settings apply.
-  /// @param is_alone whether no other patch has paths in this plan: with several patches, all use
-  /// the same loop.
-  /// @pre maximum > 0, full_scale > 0.
-  void plan_patch(const TargetField& target, double maximum, double full_scale, int patch,
-                  int paths, double budget, bool is_alone, Plan& plan, PlanStats& stats);
+  void plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats) override;
+
+  // The parts of plan_patch(), for planners that change the paths found before they append them.
+  /// Makes `loops` the paths from which the next plan continues. @param target whose origin their
+  /// coordinates are relative to.
+  void start_from(const Loops& loops, const TargetField& target);
+  /// Finds valid paths with playable pressures.
+  void find(const PatchTask& task, PlanStats& stats);
+  /// Chooses the pressures of paths in step by their percept. @param step has the task's target.
+  void choose_felt(FeltStep& step, PlanStats& stats);
+  /// Returns how the paths in step are felt. @param step has the task's target.
+  FeltRating rate(FeltStep& step) const {
+    return step.rate(plan_.loops, starts_, loop_, plan_.reconstruction.pressure);
+  }
+  /// Appends the paths to `plan`.
+  void append(const PatchTask& task, Plan& plan, PlanStats& stats);
+  double sigma() const { return settings_.sigma; }  ///< σ of the last target [m]
 
  private:
   void move_to(const Vec2& origin);
@@ -58,8 +63,6 @@ class FitPlanner {
   void choose_starts();
   ShapeSettings shape_of(const TargetField& target);
   void move_felt(const TargetField& target, PlanStats& stats);
-  void choose_felt(PlanStats& stats);
-  void append(const TargetField& target, int patch, Plan& plan, PlanStats& stats);
   double skin_factor(const TargetField& target, std::span<const Vec2> loop);
   std::span<Vec2> copy_path(int k, int to);
   std::span<Vec2> points_of(int paths) {
@@ -74,6 +77,7 @@ class FitPlanner {
   Search search_;
   Phases phases_;
   std::unique_ptr<FeltStep> felt_;  // null if felt_weight is 0
+  const bool in_step_;              // whether paths share a loop
   const int pieces_;                // pieces of a plan per segment of the search
   Fit fit_;                         // the last plan; start of the next
   Vec2 origin_ = Vec2::Zero();      // origin of the target that fit_ is for [m]
@@ -81,6 +85,7 @@ class FitPlanner {
   double last_period_ = 0.0;  // period of the last plan's loop [s]
   double rendered_ = 0.0;     // effective pressure that is 1 in fit_
   double full_scale_ = 0.0;   // rendered pressure at full output
+  StageTimer ending_;         // since the end of the search
   // scratch
   int samples_ = 0;                                       // samples per path of points_
   Fit plan_;                                              // fit_ with the samples of the plan

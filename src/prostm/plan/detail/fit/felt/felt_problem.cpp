@@ -14,11 +14,6 @@ constexpr float kSpare = 1.05F;
 constexpr double kLeastPace = 0.7;    // lower bound of the pace in that division
 constexpr float kLeastShare = 1e-6F;  // lower bound of a point's share of a lap, as a divisor
 
-/// Maximum number of cells: moving points benefits from finer cells than choosing pressures does.
-std::size_t most_cells(const PlanSettings& settings) {
-  return settings.felt_points ? kFinerFeltCells : kFeltCells;
-}
-
 }  // namespace
 
 std::size_t most_felt_points(const PlanSettings& settings) {
@@ -28,13 +23,13 @@ std::size_t most_felt_points(const PlanSettings& settings) {
          static_cast<std::size_t>(halved ? 2 * samples : samples);
 }
 
-FeltProblem::FeltProblem(const PlanSettings& settings)
+FeltProblem::FeltProblem(const PlanSettings& settings, std::size_t most_cells, std::size_t skins)
     : weight_(static_cast<float>(settings.felt_weight)),
       moves_(settings.felt_points),
-      cells_(most_cells(settings)),
-      loss_(kFeltSkins, most_cells(settings), most_felt_points(settings), FeltWeights(),
-            settings.felt_points),
-      envelope_(most_cells(settings)) {
+      tables_(skins),
+      cells_(most_cells),
+      loss_(skins, most_cells, most_felt_points(settings), FeltWeights(), settings.felt_points),
+      envelope_(most_cells) {
   const std::size_t most = most_felt_points(settings);
   sources_.reserve(most);
   paths_.reserve(kMaxPaths);
@@ -84,6 +79,11 @@ void FeltProblem::normalise(std::span<const float> root) {
 float FeltProblem::add_envelope(float felt) {
   if (weight_ >= 1.0F) return felt;
   return weight_ * felt + (1.0F - weight_) * envelope_.evaluate(loss_.rendering(), pressure_);
+}
+
+FeltRating FeltProblem::rating() const {
+  const std::span<const float> percept = loss_.percept(kNominalSkin);
+  return {loss_.lack(), *std::max_element(percept.begin(), percept.end())};
 }
 
 float FeltProblem::evaluate(std::span<const float> root) {

@@ -16,13 +16,20 @@
 
 namespace prostm::planning {
 
+/// How a plan is felt by the planner's model.
+struct FeltRating {
+  float lack = 0.0F;      ///< (W3)
+  float strength = 0.0F;  ///< largest √e on the nominal skin over the output (P20) [µm per unit]
+};
+
 /// Maximum number of points of a plan whose pressures are chosen.
 std::size_t most_felt_points(const PlanSettings& settings);
 
 /// The cost of the felt step. Only construction allocates.
 class FeltProblem {
  public:
-  explicit FeltProblem(const PlanSettings& settings);
+  /// @param most_cells maximum number of cells. @param skins as in FeltTables.
+  FeltProblem(const PlanSettings& settings, std::size_t most_cells, std::size_t skins = kFeltSkins);
 
   /// Sets the target. @param maximum its largest pressure, > 0. @param sigma σ of a focus [m].
   void set_target(const TargetField& target, double maximum, double sigma);
@@ -44,6 +51,8 @@ class FeltProblem {
     float output = 0.0F;  ///< (P20)
   };
   Loudness loudness() const { return {loss_.loudness() * output_, output_}; }
+  /// Returns how the last evaluate() is felt.
+  FeltRating rating() const;
   /// Area of the skin times mean p*² [mm²]: the scale of (P11).
   float square() const { return square_; }
 

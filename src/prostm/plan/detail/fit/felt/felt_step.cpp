@@ -27,9 +27,10 @@ void join(const Loops& loops, const LapStarts& starts, int pieces, NodeArray& pr
 
 }  // namespace
 
-FeltStep::FeltStep(const PlanSettings& settings, const FeltTuning& tuning)
+FeltStep::FeltStep(const PlanSettings& settings, const FeltTuning& tuning, const FeltScope& scope)
     : tuning_(tuning),
-      problem_(settings),
+      keeps_loudness_(scope.keeps_loudness),
+      problem_(settings, scope.most_cells, scope.skins),
       descent_((settings.felt_points ? 3 : 1) * most_felt_points(settings)) {
   const std::size_t most = most_felt_points(settings);
   kept_.points.reserve(most);
@@ -141,13 +142,14 @@ int FeltStep::descend(const QuasiNewton::Cost& cost, float fit_cost) {
   return evaluations;
 }
 
-/// Scales √p to this loudness, as far as the limits of output and pressure allow.
+/// Scales √p to this loudness, or to the highest, as far as the limits of output and pressure
+/// allow.
 void FeltStep::make_as_loud(const FeltProblem::Loudness& wanted, float most_pressure) {
   problem_.evaluate(root_);
   const FeltProblem::Loudness found = problem_.loudness();
   const float highest = *std::max_element(root_.begin(), root_.end());
-  const float scale = std::min({wanted.felt / found.felt, wanted.output / found.output,
-                                most_pressure / (highest * highest)});
+  float scale = std::min(wanted.output / found.output, most_pressure / (highest * highest));
+  if (keeps_loudness_) scale = std::min(scale, wanted.felt / found.felt);
   for (float& root : root_) root *= std::sqrt(scale);
 }
 
@@ -170,6 +172,14 @@ int FeltStep::choose_pressures(const Loops& loops, const LapStarts& starts, cons
   keep(Kept::From::LastPlan, wanted);
   join(loops, starts, pieces, pressure);
   return evaluations + (moved ? 1 : 2);
+}
+
+FeltRating FeltStep::rate(const Loops& loops, const LapStarts& starts, const CommonLoop& loop,
+                          const NodeArray& pressure) {
+  take_points(loops, starts, loop, 1);
+  take_fit(pressure);
+  problem_.evaluate(fitted_);
+  return problem_.rating();
 }
 
 /// Computes (P21). The variables are √p, then x and y of all points in FeltTuning::unit.

@@ -36,10 +36,25 @@ struct FeltTuning {
   FeltEffort moving = {50, 0.5F}, moving_again = {25, 0.5F};
 };
 
+/// The cells and skins of a felt step, and the loudness of its result.
+struct FeltScope {
+  std::size_t most_cells = kFeltCells;
+  std::size_t skins = kFeltSkins;  ///< as in FeltTables
+  /// Whether the result is as loud as the initial pressures, if the array can render that; else it
+  /// is as loud as the array can render it.
+  bool keeps_loudness = true;
+};
+/// Moving points benefits from finer cells than choosing pressures does.
+inline FeltScope felt_scope(const PlanSettings& settings) {
+  return {.most_cells = settings.felt_points ? kFinerFeltCells : kFeltCells};
+}
+
 /// The felt step of a planner. Only construction allocates.
 class FeltStep {
  public:
-  explicit FeltStep(const PlanSettings& settings, const FeltTuning& tuning = {});
+  explicit FeltStep(const PlanSettings& settings, const FeltTuning& tuning = {})
+      : FeltStep(settings, tuning, felt_scope(settings)) {}
+  FeltStep(const PlanSettings& settings, const FeltTuning& tuning, const FeltScope& scope);
 
   /// Forgets the last plan.
   void forget();
@@ -52,6 +67,9 @@ class FeltStep {
   /// between are interpolated. @param bounds limits of the emission. @return evaluations used.
   int choose_pressures(const Loops& loops, const LapStarts& starts, const CommonLoop& loop,
                        int pieces, const PlayBounds& bounds, NodeArray& pressure);
+  /// Returns how these pressures of paths in step are felt, in the cells of this step.
+  FeltRating rate(const Loops& loops, const LapStarts& starts, const CommonLoop& loop,
+                  const NodeArray& pressure);
   /// Moves the points of paths in step together with their pressures. choose_pressures(), or
   /// another call with mended paths, continues from the result. @param shape weights and bounds of
   /// (P13)–(P15). @param bounds limits of the emission, with `pieces` per segment. @param pressure
@@ -85,6 +103,7 @@ class FeltStep {
                    int pieces, std::span<const float> x, std::span<float> gradient);
 
   const FeltTuning tuning_;
+  const bool keeps_loudness_;
   FeltProblem problem_;
   QuasiNewton descent_;
   Kept kept_;

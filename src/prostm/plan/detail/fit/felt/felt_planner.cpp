@@ -1,0 +1,135 @@
+#include "prostm/plan/detail/fit/felt/felt_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "prostm/plan/detail/fit/felt/plain_loops.hpp"
+#include "prostm/plan/detail/pressure_raster.hpp"
+
+namespace prostm::planning {
+namespace {
+
+constexpr std::size_t kRoughCells = 150;        // cells on which plans are compared
+constexpr FeltEffort kRoughEffort = {8, 0.5F};  // descent of each plan that is compared
+constexpr int kPlansPerRival = 3;               // plans of a sequence for each comparison
+constexpr float kHysteresis = 0.02F;            // cost that another number of paths must save
+
+/// Settings of the felt steps, whose cost is that of the percept alone.
+PlanSettings step_settings(PlanSettings settings) {
+  settings.felt_weight = 1.0;
+  return settings;
+}
+
+FeltTuning rough_tuning() {
+  FeltTuning tuning;
+  tuning.from_fit = kRoughEffort;
+  return tuning;
+}
+
+/// Bounds of a circle or a line to start from.
+LoopBounds loop_bounds(const PlanSettings& settings, const TargetField& target) {
+  constexpr double kWidth = 1.5;  // of a traced line, over σ
+  return {.least_length = kMmPerMetre * std::min(settings.least_length, settings.max_length()),
+          .most_length = kMmPerMetre * settings.max_length(),
+          .width = kWidth * kMmPerMetre * settings.sigma_on(target)};
+}
+
+/// Returns the task of planning at most `paths` paths.
+PatchTask with_paths(PatchTask task, int paths) {
+  task.paths = paths;
+  return task;
+}
+
+}  // namespace
+
+FeltPlanner::FeltPlanner(const PlanSettings& settings, std::size_t max_cells)
+    : settings_(settings),
+      rough_(step_settings(settings), rough_tuning(),
+             {.most_cells = kRoughCells, .skins = 1, .keeps_loudness = false}),
+      fine_(step_settings(settings), {}, {.keeps_loudness = false}),
+      regions_(max_cells) {
+  const auto add = [&](int paths, Start start) {
+    candidates_.push_back({FitPlanner(settings, max_cells), paths, start});
+  };
+  for (int paths = 1; paths <= settings.paths; ++paths) add(paths, Start::Stops);
+  add(1, Start::Circle);
+  add(1, Start::Line);
+}
+
+void FeltPlanner::reset() {
+  fine_.forget();
+  count_.forget();
+  chosen_ = kNone;
+  rival_ = 0;
+  plans_ = 0;
+}
+
+/// Returns (P25).
+float FeltPlanner::cost(Candidate& candidate) {
+  const FeltRating rating = candidate.fit.rate(rough_);
+  return rating.lack - static_cast<float>(settings_.strength_weight) * std::log(rating.strength);
+}
+
+/// Makes a candidate's plan anew, up to its pressures on few cells. @return its cost.
+float FeltPlanner::plan_roughly(const PatchTask& task, Candidate& candidate, PlanStats& stats) {
+  if (candidate.start == Start::Stops) {
+    candidate.fit.reset();
+  } else {
+    loops_.samples = settings_.moved_samples();
+    const auto set = candidate.start == Start::Circle ? start_circle : start_line;
+    set(task.target, loop_bounds(settings_, task.target), loops_);
+    candidate.fit.start_from(loops_, task.target);
+  }
+  candidate.fit.find(with_paths(task, candidate.paths), stats);
+  rough_.set_target(task.target, task.maximum, candidate.fit.sigma());
+  rough_.forget();
+  candidate.fit.choose_felt(rough_, stats);
+  return cost(candidate);
+}
+
+/// Makes every candidate's plan. @return the one that costs least.
+std::size_t FeltPlanner::choose_among_all(const PatchTask& task, PlanStats& stats) {
+  std::size_t best = 0;
+  float least = std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    if (candidates_[i].paths > task.paths) continue;
+    const float own = plan_roughly(task, candidates_[i], stats);
+    if (own >= least) continue;
+    least = own;
+    best = i;
+  }
+  fine_.forget();
+  return best;
+}
+
+/// Continues the last plan, and at some frames compares it with another candidate. @return the
+/// candidate whose plan costs less.
+std::size_t FeltPlanner::continue_plan(const PatchTask& task, PlanStats& stats) {
+  Candidate& last = candidates_[chosen_];
+  last.fit.find(with_paths(task, last.paths), stats);
+  if (++plans_ % kPlansPerRival != 0 || !count_.may_change()) return chosen_;
+  do rival_ = (rival_ + 1) % candidates_.size();
+  while (rival_ == chosen_ || candidates_[rival_].paths > task.paths);
+  const float other = plan_roughly(task, candidates_[rival_], stats);
+  if (other >= cost(last) - kHysteresis) return chosen_;
+  fine_.forget();
+  return rival_;
+}
+
+void FeltPlanner::plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats) {
+  fine_.move(kMmPerMetre * (origin_ - task.target.origin));
+  origin_ = task.target.origin;
+  count_.begin(regions_.count(task.target, task.maximum), task.time);
+  const bool continues = chosen_ != kNone && candidates_[chosen_].paths <= task.paths;
+  chosen_ = continues ? continue_plan(task, stats) : choose_among_all(task, stats);
+  const StageTimer timer;
+  Candidate& chosen = candidates_[chosen_];
+  fine_.set_target(task.target, task.maximum, chosen.fit.sigma());
+  chosen.fit.choose_felt(fine_, stats);
+  chosen.fit.append(task, plan, stats);
+  count_.take(chosen.paths);
+  stats.refine += timer.seconds();
+}
+
+}  // namespace prostm::planning

@@ -1,0 +1,51 @@
+#pragma once
+/// Planning for the percept: the preset `felt` for one patch.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "prostm/plan/detail/fit/felt/felt_step.hpp"
+#include "prostm/plan/detail/fit/felt/path_count.hpp"
+#include "prostm/plan/detail/fit/fit_planner.hpp"
+#include "prostm/plan/plan_settings.hpp"
+
+namespace prostm::planning {
+
+/// Makes several plans, with every number of paths, and keeps the plan with the least cost (P25) of
+/// its percept. In a sequence, continues the last plan, and compares it with others by turns.
+class FeltPlanner : public PatchPlanner {
+ public:
+  FeltPlanner(const PlanSettings& settings, std::size_t max_cells);
+
+  void reset() override;
+  void plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats) override;
+
+ private:
+  enum class Start : std::uint8_t { Stops, Circle, Line };
+  /// A way to start a plan, with its last paths.
+  struct Candidate {
+    FitPlanner fit;
+    int paths;
+    Start start;
+  };
+
+  float plan_roughly(const PatchTask& task, Candidate& candidate, PlanStats& stats);
+  float cost(Candidate& candidate);
+  std::size_t choose_among_all(const PatchTask& task, PlanStats& stats);
+  std::size_t continue_plan(const PatchTask& task, PlanStats& stats);
+
+  const PlanSettings settings_;
+  std::vector<Candidate> candidates_;
+  FeltStep rough_, fine_;  // for comparing plans, and for the chosen plan
+  RegionCounter regions_;
+  PathCount count_;
+  std::size_t chosen_ = kNone, rival_ = 0;  // candidate of the last plan, and the last compared
+  int plans_ = 0;                           // since reset()
+  Vec2 origin_ = Vec2::Zero();              // of the last target [m]
+  Loops loops_;
+
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+};
+
+}  // namespace prostm::planning
