@@ -177,17 +177,18 @@ TEST(Controls, MovingPointsIsRejectedWithinAShortBudget) {
 }
 
 // otherwise a page's change would be rejected
-TEST(Controls, ThePapersPresetsTurnOffTheFeltWeight) {
-  for (const Preset preset : {Preset::Paper, Preset::PaperValid, Preset::Fast}) {
+TEST(Controls, PresetsToWhichItDoesNotApplyTurnOffTheFeltWeight) {
+  for (const Preset preset : {Preset::Paper, Preset::PaperValid, Preset::Fast, Preset::Felt}) {
     LiveSettings s = small_settings();
     Pipeline pipeline = pipeline_of(s);
     control_of("felt_weight").set(s, 0.9);
     ASSERT_NO_THROW(pipeline.reconfigure(s.pipeline));
     control_of("preset").set(s, static_cast<double>(preset));
     EXPECT_NO_THROW(pipeline.reconfigure(s.pipeline));
-    const bool fitted = preset == Preset::Fast;
-    EXPECT_EQ(s.pipeline.plan.felt_weight, fitted ? 0.9 : 0.0);
-    EXPECT_EQ(control_of("felt_weight").enabled(s), fitted);
+    const bool applies = preset == Preset::Fast;
+    EXPECT_EQ(s.pipeline.plan.felt_weight, applies ? 0.9 : 0.0);
+    EXPECT_EQ(control_of("felt_weight").enabled(s), applies);
+    EXPECT_EQ(control_of("strength_weight").enabled(s), preset == Preset::Felt);
     EXPECT_FALSE(control_of("am_felt_weight").enabled(s));
   }
 }

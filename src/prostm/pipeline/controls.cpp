@@ -74,6 +74,12 @@ bool is_pro_stm(const LiveSettings& s) {
 bool is_fitted(const LiveSettings& s) {
   return is_pro_stm(s) && s.pipeline.plan.traits().is_fitted();
 }
+bool takes_felt_weight(const LiveSettings& s) {
+  return is_pro_stm(s) && s.pipeline.plan.traits().takes_felt_weight();
+}
+bool is_felt(const LiveSettings& s) {
+  return is_pro_stm(s) && s.pipeline.plan.traits().chooses_by_percept;
+}
 bool has_smoke(const LiveSettings& s) {
   return is_smoke(s.pipeline);
 }
@@ -96,12 +102,12 @@ bool has_source(const LiveSettings& s, std::size_t place) {
 // ---- setters shared by controls ----
 
 /// Sets the preset. In real time, a preset with a time budget gets a share of an update. Presets
-/// without a fit do not support the felt weight, either.
+/// to which the felt weight does not apply reject it.
 void set_preset(LiveSettings& s, double value) {
   PlanSettings& plan = s.pipeline.plan;
   plan.preset = static_cast<Preset>(value);
   plan.budget = plan.traits().takes_budget ? kLiveBudget : 0.0;
-  if (!plan.traits().is_fitted()) plan.felt_weight = 0.0;
+  if (!plan.traits().takes_felt_weight()) plan.felt_weight = 0.0;
 }
 
 void set_paths(LiveSettings& s, double value) {
@@ -210,6 +216,29 @@ std::vector<RunControl> smoke_controls() {
   return list.take();
 }
 
+/// Adds the controls of plans that are optimised for what is felt.
+void add_felt_controls(ControlList& list) {
+  using S = LiveSettings;
+  list.number(
+      "felt_weight", "What is felt", "", 0, 1, 0.05,
+      [](const S& s) { return s.pipeline.plan.felt_weight; },
+      [](S& s, double v) { s.pipeline.plan.felt_weight = v; }, takes_felt_weight,
+      "Weight of the skin model when Best and Fast choose pressures; the paths are then "
+      "synchronised. 0 is off, 0.9 is recommended. Nobody has felt it.");
+  list.number(
+      "strength_weight", "Strength", "", 0, 1, 0.05,
+      [](const S& s) { return s.pipeline.plan.strength_weight; },
+      [](S& s, double v) { s.pipeline.plan.strength_weight = v; }, is_felt,
+      "Preset Felt: weight of a stronger percept against a truer shape, when the number of paths "
+      "is chosen. Nobody has felt it.");
+  list.number(
+      "am_felt_weight", "What is felt of AM", "", 0, 1, 0.05,
+      [](const S& s) { return s.pipeline.am.felt_weight; },
+      [](S& s, double v) { s.pipeline.am.felt_weight = v; }, is_am,
+      "Weight of the skin model in the choice of pressures and phases of the focal points. "
+      "0 is off. Nobody has felt it.");
+}
+
 std::vector<RunControl> plan_controls() {
   using S = LiveSettings;
   ControlList list("Plan");
@@ -241,7 +270,7 @@ std::vector<RunControl> plan_controls() {
       "array_width", "Array's own width",
       [](const S& s) { return s.pipeline.array_width ? 1.0 : 0.0; },
       [](S& s, double v) { s.pipeline.array_width = v != 0.0; }, is_fitted,
-      "Presets Best and Fast use the width of the array's focus at the hand.");
+      "Presets Best, Fast and Felt use the width of the array's focus at the hand.");
   list.number(
       "sigma", "Width σ", "mm", 4, 20, 0.1,
       [](const S& s) { return std::round(1e4 * s.pipeline.sigma()) * 0.1; }, set_sigma, always,
@@ -250,19 +279,8 @@ std::vector<RunControl> plan_controls() {
       "bending", "Smoothness", "", 0, 0.3, 0.01,
       [](const S& s) { return s.pipeline.plan.fit_bending; },
       [](S& s, double v) { s.pipeline.plan.fit_bending = v; }, is_fitted,
-      "Cost of bends in a path, for presets Best and Fast.");
-  list.number(
-      "felt_weight", "What is felt", "", 0, 1, 0.05,
-      [](const S& s) { return s.pipeline.plan.felt_weight; },
-      [](S& s, double v) { s.pipeline.plan.felt_weight = v; }, is_fitted,
-      "Weight of the skin model when Best and Fast choose pressures; the paths are then "
-      "synchronised. 0 is off, 0.9 is recommended. Nobody has felt it.");
-  list.number(
-      "am_felt_weight", "What is felt of AM", "", 0, 1, 0.05,
-      [](const S& s) { return s.pipeline.am.felt_weight; },
-      [](S& s, double v) { s.pipeline.am.felt_weight = v; }, is_am,
-      "Weight of the skin model in the choice of pressures and phases of the focal points. "
-      "0 is off. Nobody has felt it.");
+      "Cost of bends in a path, for presets Best, Fast and Felt.");
+  add_felt_controls(list);
   return list.take();
 }
 

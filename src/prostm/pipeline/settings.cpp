@@ -18,7 +18,7 @@ void list_all_but_world(Settings& s, Visitor& v) {
   v.field({.name = "device", .help = "output device"}, s.device);
   v.field({.name = "array", .help = "the transducers, by name or a file"}, s.array);
   v.field({.name = "array_width",
-           .help = "whether best and fast use the width of the array's focus "
+           .help = "whether best, fast and felt use the width of the array's focus "
                    "instead of sigma"},
           s.array_width);
   v.field({.name = "tracker",

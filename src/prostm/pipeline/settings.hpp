@@ -30,7 +30,8 @@ struct PipelineSettings {
   Method method = Method::ProStm;
   std::string device = "sim";                      ///< name of the device, see device_named()
   std::string array = array_kinds().front().name;  ///< name or file of `transducers`
-  /// Whether presets best and fast assume the width of the array's focus instead of [plan] sigma.
+  /// Whether presets best, fast and felt assume the width of the array's focus instead of [plan]
+  /// sigma.
   bool array_width = false;
   std::string tracker = "centre";  ///< origin of `X_DT`: centre, a kit or a file
   double world_rate = 50.0;        ///< steps of the world per second [Hz]

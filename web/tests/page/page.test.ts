@@ -249,7 +249,11 @@ describe("controls", () => {
     await becomes("felt_weight", 0);
     await inStep(false);
     expect(await works("felt_weight")).toBe(false);
+    await turn("preset", "felt");
+    await inStep(true);
+    expect([await works("felt_weight"), await works("strength_weight")]).toEqual([false, true]);
     await turn("preset", "best");
+    await inStep(false);
   });
   it("delay foci with the felt weight", async () => {
     await turn("method", "am");
