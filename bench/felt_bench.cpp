@@ -19,6 +19,7 @@ namespace prostm::bench {
 namespace {
 
 constexpr double kSigma = 4.3e-3;  // of the array's focus at 200 mm [m]
+constexpr int kPalmCells = 34;     // rows and columns, 4.7 mm apart, for the times of preset felt
 
 PlanSettings settings_of(double felt_weight, bool points) {
   PlanSettings settings;
@@ -62,6 +63,26 @@ void measure_plans(int frames, bool warm, bool points, std::vector<Row>& rows) {
   rows.push_back({fmt::format("felt/more for a plan, {}, {}", points ? "points" : "pressures",
                               warm ? "warm" : "cold"),
                   "ms", more.summary(), "the plan without it", plain_times.summary().p50});
+}
+
+/// Time of plans of preset felt for four plumes, and of those of preset best in turn with them.
+void measure_preset(int frames, bool warm, std::vector<Row>& rows) {
+  PlanSettings chosen = settings_of(0.0, false);
+  chosen.preset = Preset::Felt;
+  Timed best(settings_of(0.0, false), warm), felt(chosen, warm);
+  Distribution times, best_times;
+  for (int round = 0; round < 2; ++round) {
+    for (int frame = 0; frame < frames; ++frame) {
+      const TargetField field = fields::make(fields::Pattern::FourPlumes, frame, kPalmCells);
+      const double without = best.plan(field), with = felt.plan(field);
+      // the first round also makes the tables, which are reused
+      if (round == 0) continue;
+      best_times.add(without);
+      times.add(with);
+    }
+  }
+  rows.push_back({fmt::format("felt/preset felt, {}", warm ? "warm" : "cold"), "ms",
+                  times.summary(), "preset best", best_times.summary().p50});
 }
 
 /// Sources of four paths of 28 points on a hand, as a plan has them.
@@ -147,6 +168,7 @@ int main(int argc, char** argv) {
     std::vector<Row> rows;
     measure_evaluations(rows);
     for (const bool warm : {false, true}) measure_plans(frames, warm, false, rows);
+    for (const bool warm : {false, true}) measure_preset(100, warm, rows);
     measure_plans(std::min(frames, 6), false, true, rows);
     return rows;
   });
