@@ -398,6 +398,7 @@ def test_am_finds_no_foci_without_pressure(prostm, tmp_path):
     assert "no pressure anywhere, so no focus" in prostm("plan", path, "--method", "am").stdout
 
 
+@pytest.mark.long
 def test_am_runs_and_records_foci(prostm, tmp_path):
     files = [tmp_path / "threaded.h5", tmp_path / "stepped.h5"]
     figure = tmp_path / "am.png"
@@ -435,6 +436,7 @@ def test_bench_has_the_row_of_am(prostm, tmp_path):
     assert "updates a second" in done.stdout and "textbook" not in done.stdout
 
 
+@pytest.mark.long
 def test_field_of_a_plan(prostm, field, tmp_path):
     prostm("plan", field, "--json", "plan.json")
     out = prostm("field", "plan.json", "--field", field, "--figure", "f.png", "--json", "-").stdout
@@ -479,6 +481,7 @@ def test_field_of_a_plan(prostm, field, tmp_path):
     assert am["envelope"]["metrics"]["correlation"] > 0.2
 
 
+@pytest.mark.long
 def test_plans_in_step_and_foci_with_phases_have_fields(prostm, field, tmp_path):
     prostm("plan", field, "--json", "plan.json")
     plan = json.loads((tmp_path / "plan.json").read_text())

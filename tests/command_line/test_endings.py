@@ -76,7 +76,8 @@ def test_an_ignored_signal_stays_ignored(program, tmp_path, name):
     assert summary["stopped"] is False and summary["stopped_by"] is None
 
 
-@pytest.mark.parametrize("pace", ["--realtime", "--as-fast-as-possible", "--stepped"])
+@pytest.mark.parametrize("pace", [pytest.param("--realtime", marks=pytest.mark.long),
+                                  pytest.param("--as-fast-as-possible", marks=pytest.mark.long), "--stepped"])
 def test_a_full_disk_ends_a_run(program, tmp_path, pace):
     running = start(program, tmp_path, pace, limit=1_000_000)
     out, errors = running.communicate(timeout=120)

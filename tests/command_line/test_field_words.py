@@ -167,6 +167,7 @@ def test_impossible_sizes(refuses, tmp_path):
     refuses("plan", "a.npy", words=["--cell-mm", "--width-mm"])
 
 
+@pytest.mark.long
 def test_field_reads_an_image_like_plan(prostm, tmp_path):
     write_grey_png(tmp_path / "ink.png", drawing(20))
     picture = ["ink.png", "--width-mm", "80", "--invert"]
@@ -175,6 +176,7 @@ def test_field_reads_an_image_like_plan(prostm, tmp_path):
     assert json.loads(done.stdout)["envelope"]["metrics"]["correlation"] > 0.2
 
 
+@pytest.mark.long
 def test_the_spectrum_of_the_felt_field(prostm, tmp_path):
     (tmp_path / "blob.json").write_text(json.dumps(blob_field()))
     prostm("plan", "blob.json", "--preset", "fast", "--json", "blob.plan.json")

@@ -28,6 +28,7 @@ def warnings_of(result):
     return [line for line in result.stderr.splitlines() if "has no locks" in line]
 
 
+@pytest.mark.long
 def test_recordings_are_written_and_read_with_a_warning(prostm, tmp_path, without_locks):
     run = prostm("run", "--grid", "32", "--stepped", "--seconds", "2", "--record", "r.h5")
     assert len(warnings_of(run)) == 1 and (tmp_path / "r.h5").exists()

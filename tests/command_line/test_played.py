@@ -30,7 +30,8 @@ def settings(tmp_path, text):
     return path
 
 
-@pytest.mark.parametrize("preset", ["paper", "paper-valid", "best", "fast"])
+@pytest.mark.parametrize("preset", ["paper", "best", *(pytest.param(preset, marks=pytest.mark.long)
+                                                        for preset in ["paper-valid", "fast", "felt"])])
 def test_plan_and_field_report_what_is_played(prostm, field, tmp_path, preset):
     toml = settings(tmp_path, f'[plan]\npreset = "{preset}"\nspeed = 8\npaths = 2\n')
     plan = json.loads(prostm("plan", field, "--settings", toml, "--json", "-").stdout)

@@ -54,6 +54,7 @@ def test_in_real_time_the_verdict_is_about_the_rates(prostm, tmp_path):
     assert "of 50 Hz, plans" in summary["verdict"]["sentences"][0]
 
 
+@pytest.mark.long
 def test_every_file_is_named_once_and_standard_output_is_not(prostm, tmp_path):
     done = prostm(*SMALL, "--stepped", "--seconds", "6", "--record", "r.h5", "--figure", "r.png", "--json", "r.json")
     assert re.findall(r"^wrote (.*)$", done.stdout, re.M) == ["r.h5", "r.json", "r.png"]
@@ -119,6 +120,7 @@ def test_a_terminal_without_erase_gets_no_escape_sequences(program, tmp_path, ki
     assert "3.0 s of the scene" in shown and "\x1b" not in shown and "running" not in shown
 
 
+@pytest.mark.long
 def test_the_summary_starts_with_a_held_hand_without_its_stimulus(prostm, tmp_path):
     def first(grid):
         out = prostm("run", "--scene", "four-plumes", "--hand", "study", "--grid", str(grid), "--seconds", "8",

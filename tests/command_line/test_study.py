@@ -294,6 +294,7 @@ def test_a_number_is_decimal_however_it_is_written(prostm, refuses, tmp_path):
     refuses(*STUDY, "10", "--rehearse", "1", words=["participant 10 has begun in answers/first.jsonl", "another number"])
 
 
+@pytest.mark.long
 def test_a_participant_replaces_another(prostm, refuses, tmp_path):
     (tmp_path / "short.toml").write_text("[study]\nparticipants = 4\nmethods = \"within\"\n" + SHORT + "[method.b.fluid]\ncells = 32\n")
     def header(number):

@@ -41,6 +41,7 @@ def test_a_cap_can_be_lowered_and_never_raised(prostm, refuses, tmp_path):
         refuses("levels", "--settings", "high.toml", words=(key, "must be between"))
 
 
+@pytest.mark.long
 def test_lowered_caps_weaken_a_run_and_are_reported(prostm, tmp_path):
     (tmp_path / "low.toml").write_text("[safety]\nmean_radiation_pressure = 50\n")
     run = ("run", "--stepped", "--grid", "32", "--seconds", "4", "--json", "run.json")
