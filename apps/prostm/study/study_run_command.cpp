@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "prostm/study/session/session.hpp"
 #include "prostm/study/session/spelling.hpp"
 #include "prostm/study/task/line_keys.hpp"
+#include "run/felt_plans.hpp"
 #include "run/view.hpp"
 #include "study/study_protocol.hpp"
 
@@ -33,18 +35,51 @@ void tell_news(Source& source) {
   }
 }
 
-/// Ends the run when the session is closed, on a signal, or if the pages' server fails.
+/// Plans of the stimuli of a session, those of paths and those of stationary foci.
+class SessionPlans {
+ public:
+  void offer(const WorldFrame& contact, const PlanFrame& plan) {
+    if (plan.status != PlanStatus::Planned) return;
+    const Method kind = plan.plan.foci.empty() ? Method::ProStm : Method::Am;
+    plans_[static_cast<std::size_t>(kind)].offer(contact, plan);
+  }
+  /// Prints how strongly they are felt, which takes about a second for each of the two.
+  /// @param settings of the session; those of the output are the protocol's.
+  void print_levels(std::FILE* out, PipelineSettings settings, const Protocol& protocol) const {
+    for (const Method kind : {Method::ProStm, Method::Am}) {
+      const auto method = std::ranges::find_if(protocol.methods, [&](const StudyMethod& of_study) {
+        return of_study.settings.method == kind;
+      });
+      if (method == protocol.methods.end()) continue;
+      settings.emit = method->settings.emit;
+      const auto levels = plans_[static_cast<std::size_t>(kind)].levels(settings);
+      if (!levels) continue;
+      fmt::print(out, "Stimuli of {}:\n", kind == Method::Am ? "stationary foci" : "paths");
+      print_felt_levels(out, levels, sensation_interval(settings.transducers));
+    }
+  }
+
+ private:
+  std::array<FeltPlans, 2> plans_;  // by Method
+};
+
+/// Ends the run when the session is closed, on a signal, or if the pages' server fails. Collects
+/// the plans of its stimuli.
 class Observer final : public RunObserver {
  public:
   Observer(const View& view, StudyView& study, MarkerSender& markers, const Interrupt& interrupt)
       : view_(view), study_(study), markers_(markers), interrupt_(interrupt) {}
-  bool on_plan(const WorldFrame&, const PlanFrame&) override { return goes_on(); }
+  bool on_plan(const WorldFrame& contact, const PlanFrame& plan) override {
+    plans_.offer(contact, plan);
+    return goes_on();
+  }
   bool on_progress(double) override {
     view_.check();
     tell_news(markers_);
     tell_news(study_);
     return goes_on();
   }
+  const SessionPlans& plans() const { return plans_; }
 
  private:
   bool goes_on() const { return !interrupt_.requested() && !study_.closed(); }
@@ -53,6 +88,7 @@ class Observer final : public RunObserver {
   StudyView& study_;
   MarkerSender& markers_;
   const Interrupt& interrupt_;
+  SessionPlans plans_;
 };
 
 /// Closes the pages before the data they show is destroyed, however a run ends.
@@ -222,7 +258,8 @@ std::size_t answers_in(const std::vector<ResponseLine>& lines) {
 }
 
 void report(std::FILE* out, const StudySession& session, const ResponseFile& file,
-            const RunSummary& summary) {
+            const RunSummary& summary, const SessionPlans& plans,
+            const PipelineSettings& settings) {
   const Course& course = session.course();
   const std::size_t answers = answers_in(file.lines());  // not those that could not be written
   if (course.is_open()) {
@@ -246,6 +283,7 @@ void report(std::FILE* out, const StudySession& session, const ResponseFile& fil
                "the output missed; see prostm check.\n",
                summary.skipped_world_steps, summary.device.missed_blocks);
   }
+  plans.print_levels(out, settings, session.protocol());
 }
 
 }  // namespace
@@ -301,7 +339,7 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   write_rest(markers, session);
   if (summary.failure) return tell(summary.failure);
   const std::string unwritten = session.finish(study_time().time);
-  report(stdout, session, file, summary);
+  report(stdout, session, file, summary, observer.plans(), settings);
   if (!given.markers.empty()) tell_delays(stdout, file, run_of(file));
   if (!unwritten.empty()) {
     throw InputError(fmt::format("{}; lost answers: {}; continue with --resume", unwritten,
