@@ -331,7 +331,7 @@ std::string felt_words(const PipelineSettings& settings) {
   const bool am = settings.method == Method::Am;
   if (!am && settings.plan.traits().chooses_by_percept) {
     return fmt::format(
-        "number of paths and pressures chosen by what the model of the skin feels "
+        "number of paths, points and pressures chosen by what the model of the skin feels "
         "(plan.strength_weight {:g}); nobody has felt it",
         settings.plan.strength_weight);
   }

@@ -66,8 +66,8 @@ def test_the_preset_reports_what_it_chose(prostm, settings):
     text = prostm("plan", FIELD, "--preset", "felt").stdout
     plan = plan_of(prostm, "--preset", "felt")
     assert line_with(text, "nobody has felt it") == (
-        f"  in step: all paths come round together every {plan['loop_ms']:.1f} ms; number of paths and pressures chosen "
-        "by what the model of the skin feels (plan.strength_weight 0.1); nobody has felt it")
+        f"  in step: all paths come round together every {plan['loop_ms']:.1f} ms; number of paths, points and pressures "
+        "chosen by what the model of the skin feels (plan.strength_weight 0.1); nobody has felt it")
     stronger = plan_of(prostm, "--preset", "felt", "--settings", settings("[plan]\nstrength_weight = 5\n"))
     assert len(stronger["paths"]) == 1 <= len(plan["paths"]) <= 4
 

@@ -298,9 +298,8 @@ ShapeSettings FitPlanner::shape_of(const TargetField& target) {
   return shape;
 }
 
-/// Moves the points of the plan by its percept, and mends the paths, kMoveRounds times.
-void FitPlanner::move_felt(const TargetField& target, PlanStats& stats) {
-  for (int round = 0; round < kMoveRounds; ++round) {
+void FitPlanner::move_felt(const PatchTask& task, FeltStep& step, int rounds, PlanStats& stats) {
+  for (int round = 0; round < rounds; ++round) {
     LapStarts starts = starts_;
     for (LapStart& start : starts) start.first /= pieces_;
     for (int k = 0; k < fit_.loops.paths; ++k) {
@@ -309,11 +308,11 @@ void FitPlanner::move_felt(const TargetField& target, PlanStats& stats) {
             plan_.reconstruction.pressure[plan_.loops.node(i * pieces_, k)];
       }
     }
-    ShapeSettings shape = shape_of(target);
+    ShapeSettings shape = shape_of(task.target);
     shape.weight_bending *= kMovedBending;
-    stats.cost_evaluations += felt_->move_points(starts, loop_, shape, bounds_, pieces_,
-                                                 fit_.reconstruction.pressure, fit_.loops);
-    mend(target, stats);
+    stats.cost_evaluations += step.move_points(starts, loop_, shape, bounds_, pieces_,
+                                               fit_.reconstruction.pressure, fit_.loops);
+    mend(task.target, stats);
     choose_starts();
   }
 }
@@ -398,7 +397,7 @@ void FitPlanner::plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats)
   StageTimer timer;
   if (felt_) {
     felt_->set_target(task.target, task.maximum, settings_.sigma);
-    if (settings_.felt_points) move_felt(task.target, stats);
+    if (settings_.felt_points) move_felt(task, *felt_, kMoveRounds, stats);
     choose_felt(*felt_, stats);
   }
   append(task, plan, stats);

@@ -35,6 +35,9 @@ class FitPlanner : public PatchPlanner {
   void start_from(const Loops& loops, const TargetField& target);
   /// Finds valid paths with playable pressures.
   void find(const PatchTask& task, PlanStats& stats);
+  /// Moves the points of paths in step by their percept, and mends the paths. @param step has the
+  /// task's target. @param rounds number of repetitions.
+  void move_felt(const PatchTask& task, FeltStep& step, int rounds, PlanStats& stats);
   /// Chooses the pressures of paths in step by their percept. @param step has the task's target.
   void choose_felt(FeltStep& step, PlanStats& stats);
   /// Returns how the paths in step are felt. @param step has the task's target.
@@ -62,7 +65,6 @@ class FitPlanner : public PatchPlanner {
   int drop_long(const TargetField& target, int paths, double least_length);
   void choose_starts();
   ShapeSettings shape_of(const TargetField& target);
-  void move_felt(const TargetField& target, PlanStats& stats);
   double skin_factor(const TargetField& target, std::span<const Vec2> loop);
   std::span<Vec2> copy_path(int k, int to);
   std::span<Vec2> points_of(int paths) {

@@ -10,10 +10,11 @@
 namespace prostm::planning {
 namespace {
 
-constexpr std::size_t kRoughCells = 150;        // cells on which plans are compared
+constexpr std::size_t kRoughCells = 150;  // cells on which plans are compared, and points move
 constexpr FeltEffort kRoughEffort = {8, 0.5F};  // descent of each plan that is compared
-constexpr int kPlansPerRival = 3;               // plans of a sequence for each comparison
-constexpr float kHysteresis = 0.02F;            // cost that another number of paths must save
+constexpr FeltEffort kMovingEffort = {25, 0.5F}, kMovedEffort = {12, 0.5F};
+constexpr int kPlansPerRival = 3;     // plans of a sequence for each comparison
+constexpr float kHysteresis = 0.02F;  // cost that another number of paths must save
 
 /// Settings of the felt steps, whose cost is that of the percept alone.
 PlanSettings step_settings(PlanSettings settings) {
@@ -25,6 +26,18 @@ FeltTuning rough_tuning() {
   FeltTuning tuning;
   tuning.from_fit = kRoughEffort;
   return tuning;
+}
+
+FeltTuning fine_tuning() {
+  FeltTuning tuning;
+  tuning.moving = kMovingEffort;
+  tuning.from_moved = kMovedEffort;
+  return tuning;
+}
+
+PlanSettings moving_settings(PlanSettings settings) {
+  settings.felt_points = true;
+  return step_settings(settings);
 }
 
 /// Bounds of a circle or a line to start from.
@@ -47,7 +60,9 @@ FeltPlanner::FeltPlanner(const PlanSettings& settings, std::size_t max_cells)
     : settings_(settings),
       rough_(step_settings(settings), rough_tuning(),
              {.most_cells = kRoughCells, .skins = 1, .keeps_loudness = false}),
-      fine_(step_settings(settings), {}, {.keeps_loudness = false}),
+      moving_(moving_settings(settings), fine_tuning(),
+              {.most_cells = kRoughCells, .skins = 1, .keeps_loudness = false}),
+      fine_(step_settings(settings), fine_tuning(), {.keeps_loudness = false}),
       regions_(max_cells) {
   const auto add = [&](int paths, Start start) {
     candidates_.push_back({FitPlanner(settings, max_cells), paths, start});
@@ -82,13 +97,17 @@ float FeltPlanner::plan_roughly(const PatchTask& task, Candidate& candidate, Pla
     candidate.fit.start_from(loops_, task.target);
   }
   candidate.fit.find(with_paths(task, candidate.paths), stats);
+  const StageTimer timer;
   rough_.set_target(task.target, task.maximum, candidate.fit.sigma());
   rough_.forget();
   candidate.fit.choose_felt(rough_, stats);
-  return cost(candidate);
+  const float found = cost(candidate);
+  stats.refine += timer.seconds();
+  return found;
 }
 
-/// Makes every candidate's plan. @return the one that costs least.
+/// Makes every candidate's plan, and moves the points of the one that costs least. @return that
+/// candidate.
 std::size_t FeltPlanner::choose_among_all(const PatchTask& task, PlanStats& stats) {
   std::size_t best = 0;
   float least = std::numeric_limits<float>::infinity();
@@ -99,8 +118,18 @@ std::size_t FeltPlanner::choose_among_all(const PatchTask& task, PlanStats& stat
     least = own;
     best = i;
   }
-  fine_.forget();
+  move_points(task, candidates_[best].fit, stats);
   return best;
+}
+
+/// Moves the points of a plan, whose pressures fine_ then continues from.
+void FeltPlanner::move_points(const PatchTask& task, FitPlanner& fit, PlanStats& stats) {
+  const StageTimer timer;
+  moving_.forget();
+  moving_.set_target(task.target, task.maximum, fit.sigma());
+  fit.move_felt(task, moving_, 1, stats);
+  fine_.continue_from(moving_);
+  stats.refine += timer.seconds();
 }
 
 /// Continues the last plan, and at some frames compares it with another candidate. @return the

@@ -34,10 +34,11 @@ class FeltPlanner : public PatchPlanner {
   float cost(Candidate& candidate);
   std::size_t choose_among_all(const PatchTask& task, PlanStats& stats);
   std::size_t continue_plan(const PatchTask& task, PlanStats& stats);
+  void move_points(const PatchTask& task, FitPlanner& fit, PlanStats& stats);
 
   const PlanSettings settings_;
   std::vector<Candidate> candidates_;
-  FeltStep rough_, fine_;  // for comparing plans, and for the chosen plan
+  FeltStep rough_, moving_, fine_;  // for comparing plans, and for the chosen plan
   RegionCounter regions_;
   PathCount count_;
   std::size_t chosen_ = kNone, rival_ = 0;  // candidate of the last plan, and the last compared

@@ -158,7 +158,9 @@ int FeltStep::choose_pressures(const Loops& loops, const LapStarts& starts, cons
   const StepPoints points = take_points(loops, starts, loop, pieces);
   take_fit(pressure);
   const bool moved = kept_.from == Kept::From::MovedPoints;
-  const float fit_cost = moved ? 0.0F : problem_.keep_loudness(fitted_);
+  if (moved) begin_at_kept();
+  const bool same_loudness = moved && keeps_loudness_;  // that of the fit before points moved
+  const float fit_cost = same_loudness ? 0.0F : problem_.keep_loudness(moved ? root_ : fitted_);
   const FeltProblem::Loudness wanted = moved ? kept_.wanted : problem_.loudness();
   const auto cost = [&](std::span<const float> root, std::span<float> gradient) {
     const float value = problem_.evaluate(root);

@@ -58,6 +58,8 @@ class FeltStep {
 
   /// Forgets the last plan.
   void forget();
+  /// Continues from the points of another step, instead of the last plan.
+  void continue_from(const FeltStep& other) { kept_ = other.kept_; }
   /// Shifts the coordinates of the last plan [mm].
   void move(const Vec2& shift);
   /// Sets the target. @param maximum its largest pressure, > 0. @param sigma σ of a focus [m].
