@@ -157,13 +157,13 @@ def test_a_missing_tracker_is_reported_at_once_and_in_the_exit_status(program, t
     port = free_port()
     running = start(program, tmp_path, *SMALL, "--hand", f"leap://127.0.0.1:{port}", "--seconds", "4", "--json", "r.json",
                     "--record", "r.h5", "--figure", "r.png")
-    begun = time.monotonic()
     line = running.stdout.readline()
-    assert time.monotonic() - begun < 3.0
+    reported = time.monotonic()
     for words in [f"No tracker yet: nothing answers at leap://127.0.0.1:{port}; ", "UltraleapTrackingWebSocket", "6437",
                   "keeps trying"]:
         assert words in line
     out, errors = running.communicate(timeout=60)
+    assert time.monotonic() - reported > 1.0, "long before the end"
     assert running.returncode == 3 and errors == ""
     assert out.count("No tracker yet") == 0 and "No hand frame ever arrived: " in out
     summary = json.loads((tmp_path / "r.json").read_text())
@@ -223,17 +223,24 @@ class LeapStandIn:
         self.thread.join()
 
 
+def news(running):
+    """Returns the next line, without those on the rates, which depend on what else the machine does."""
+    while (line := running.stdout.readline()).startswith("The rates "):
+        pass
+    return line
+
+
 def test_a_tracker_that_comes_and_goes_is_reported_once_each(program, tmp_path):
     port = free_port()
     running = start(program, tmp_path, *SMALL, "--hand", f"leap://127.0.0.1:{port}", "--seconds", "600", "--json", "r.json")
     try:
-        assert running.stdout.readline().startswith("No tracker yet: ")
+        assert news(running).startswith("No tracker yet: ")
         service = LeapStandIn(port)
-        assert running.stdout.readline().startswith("The tracker is there: connected to leap://")
+        assert news(running).startswith("The tracker is there: connected to leap://")
         service.close()
-        assert running.stdout.readline().startswith("The tracker is lost: ")
+        assert news(running).startswith("The tracker is lost: ")
         service = LeapStandIn(port)
-        assert running.stdout.readline().startswith("The tracker is back: ")
+        assert news(running).startswith("The tracker is back: ")
         service.close()
     finally:
         running.send_signal(signal.SIGINT)
