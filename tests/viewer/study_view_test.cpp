@@ -38,6 +38,7 @@ class LiveStudy {
     ViewSettings settings;
     settings.port = 0;
     settings.guests = true;
+    settings.stall_time = settings.idle_time = 600.0;  // a test reads one page at a time
     server_ = std::make_unique<ViewServer>(settings, *view_, std::span<const PageFile>());
     RunOptions options = test::for_long();
     options.live = &link_;

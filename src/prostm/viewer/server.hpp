@@ -21,6 +21,7 @@ struct ViewSettings {
   int max_connections = 64;    ///< largest number of connections, HTTP and WebSocket
   double request_time = 10.0;  ///< time limit for a request and its answer [s]
   double stall_time = 20.0;    ///< a page that does not read for this time is dropped [s]
+  double idle_time = 30.0;     ///< a page that does not answer pings for this time is dropped [s]
 };
 
 inline constexpr int kViewPort = 8470, kViewPortTries = 20;

@@ -14,7 +14,6 @@ constexpr std::size_t kMaxTexts = 64;       // largest number of texts waiting t
 constexpr int kMaxNonsense = 100;           // successive malformed messages
 constexpr int kMaxMessages = 2000;          // messages per second
 constexpr int kSendBuffer = 256 * 1024;  // kernel buffer, small so that few frames in it are stale
-constexpr auto kIdleTime = std::chrono::seconds(30);
 constexpr std::string_view kServer = "prostm";
 
 std::chrono::nanoseconds nanoseconds(double seconds) {
@@ -132,8 +131,8 @@ void Session::upgrade(Room room) {
   stream_.socket().set_option(asio::ip::tcp::no_delay(true), ignored);
   stream_.socket().set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
   socket_.emplace(std::move(stream_));
-  socket_->set_option(
-      websocket::stream_base::timeout{nanoseconds(hub_.settings.request_time), kIdleTime, true});
+  socket_->set_option(websocket::stream_base::timeout{nanoseconds(hub_.settings.request_time),
+                                                      nanoseconds(hub_.settings.idle_time), true});
   socket_->read_message_max(kMaxPageMessage);
   socket_->auto_fragment(false);
   socket_->async_accept(parser_->get(), [self = shared_from_this()](beast::error_code wrong) {
