@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <sstream>
+#include <type_traits>
 
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/text/names.hpp"
@@ -120,18 +121,32 @@ void set_sigma(LiveSettings& s, double millimetres) {
   s.pipeline.array_width = false;
 }
 
+/// How a control reads and changes the settings.
+struct Access {
+  double (*get)(const LiveSettings&);
+  void (*set)(LiveSettings&, double);
+};
+
+/// Access to one member of the settings. @param Of returns a reference to it; it captures nothing.
+template <class Of>
+Access member(Of) {
+  return {[](const LiveSettings& s) { return static_cast<double>(Of{}(s)); },
+          [](LiveSettings& s, double v) {
+            auto& of = Of{}(s);
+            of = static_cast<std::remove_reference_t<decltype(of)>>(v);
+          }};
+}
+
 /// Collects the controls of a group.
 class ControlList {
  public:
   using Settings = const LiveSettings&;
-  using Get = double (*)(Settings);
-  using Set = void (*)(LiveSettings&, double);
   using Enabled = bool (*)(Settings);
 
   explicit ControlList(std::string_view group) : group_(group) {}
 
   void number(std::string_view id, std::string_view label, std::string_view unit, double low,
-              double high, double step, Get get, Set set, Enabled enabled, std::string_view help) {
+              double high, double step, Access access, Enabled enabled, std::string_view help) {
     all_.push_back({.id = id,
                     .group = group_,
                     .label = label,
@@ -141,22 +156,22 @@ class ControlList {
                     .high = high,
                     .step = step,
                     .choices = {},
-                    .get = get,
-                    .set = set,
+                    .get = access.get,
+                    .set = access.set,
                     .enabled = enabled});
   }
   void choice(std::string_view id, std::string_view label, std::span<const ControlChoice> choices,
-              Get get, Set set, Enabled enabled, std::string_view help,
+              Access access, Enabled enabled, std::string_view help,
               bool (*available)(Settings, std::size_t place) = nullptr) {
-    number(id, label, "", 0.0, static_cast<double>(choices.size()) - 1.0, 1.0, get, set, enabled,
+    number(id, label, "", 0.0, static_cast<double>(choices.size()) - 1.0, 1.0, access, enabled,
            help);
     all_.back().kind = ControlKind::Choice;
     all_.back().choices = choices;
     all_.back().available = available;
   }
-  void toggle(std::string_view id, std::string_view label, Get get, Set set, Enabled enabled,
+  void toggle(std::string_view id, std::string_view label, Access access, Enabled enabled,
               std::string_view help) {
-    number(id, label, "", 0.0, 1.0, 1.0, get, set, enabled, help);
+    number(id, label, "", 0.0, 1.0, 1.0, access, enabled, help);
     all_.back().kind = ControlKind::Switch;
   }
   std::vector<RunControl> take() { return std::move(all_); }
@@ -170,160 +185,128 @@ std::vector<RunControl> smoke_controls() {
   using S = LiveSettings;
   ControlList list("Smoke");
   list.choice(
-      "scene", "Scene", kScenes, [](const S& s) { return place(kScenes, s.pipeline.scene); },
-      [](S& s, double v) { s.pipeline.scene = chosen(kScenes, v); }, always,
+      "scene", "Scene", kScenes,
+      {[](const S& s) { return place(kScenes, s.pipeline.scene); },
+       [](S& s, double v) { s.pipeline.scene = chosen(kScenes, v); }},
+      always,
       "Smoke scene. Each scene has its own full scale: the pressure that gives full output.",
       has_scene);
   list.number(
       "jet_speed", "Emitter", "×", 0, 2, 0.05,
-      [](const S& s) { return s.pipeline.fluid.jet_speed; },
-      [](S& s, double v) { s.pipeline.fluid.jet_speed = v; }, has_jets,
+      member([](auto& s) -> auto& { return s.pipeline.fluid.jet_speed; }), has_jets,
       "Speed of the smoke that the emitter blows, over the scene's own. Pressure varies with its "
       "square.");
   list.choice(
       "jet_place", "Jets", kJetPlaces,
-      [](const S& s) { return static_cast<double>(s.pipeline.jets.place); },
-      [](S& s, double v) { s.pipeline.jets.place = static_cast<JetPlace>(v); }, has_jets,
+      member([](auto& s) -> auto& { return s.pipeline.jets.place; }), has_jets,
       "Over the array's middle, or where the palm is when you choose this, turned and sized with "
       "it.");
-  list.number(
-      "trim_rate", "Trim", "1/s", 0, 1, 0.05, [](const S& s) { return s.pipeline.jets.trim_rate; },
-      [](S& s, double v) { s.pipeline.jets.trim_rate = v; }, has_jets,
-      "Rate at which the pressures of several jets on the hand are equalised. 0: off.");
-  list.number(
-      "buoyancy", "Buoyancy", "m/s²", 0, 5, 0.1,
-      [](const S& s) { return s.pipeline.fluid.buoyancy; },
-      [](S& s, double v) { s.pipeline.fluid.buoyancy = v; }, has_smoke,
-      "How strongly undiluted smoke rises.");
+  list.number("trim_rate", "Trim", "1/s", 0, 1, 0.05,
+              member([](auto& s) -> auto& { return s.pipeline.jets.trim_rate; }), has_jets,
+              "Rate at which the pressures of several jets on the hand are equalised. 0: off.");
+  list.number("buoyancy", "Buoyancy", "m/s²", 0, 5, 0.1,
+              member([](auto& s) -> auto& { return s.pipeline.fluid.buoyancy; }), has_smoke,
+              "How strongly undiluted smoke rises.");
   list.choice(
       "pressure_of", "Pressure of", kParts,
-      [](const S& s) { return static_cast<double>(s.pipeline.fluid_pressure.part); },
-      [](S& s, double v) { s.pipeline.fluid_pressure.part = static_cast<PressurePart>(v); },
-      has_smoke,
+      member([](auto& s) -> auto& { return s.pipeline.fluid_pressure.part; }), has_smoke,
       "All of the air's pressure, the smoke's share of it, or that of the hand's own movement in "
       "still air. A part takes twice the smoke's time.");
   list.toggle(
-      "parts", "Both parts", [](const S& s) { return s.pipeline.fluid_pressure.parts ? 1.0 : 0.0; },
-      [](S& s, double v) { s.pipeline.fluid_pressure.parts = v != 0.0; }, has_smoke,
+      "parts", "Both parts",
+      member([](auto& s) -> auto& { return s.pipeline.fluid_pressure.parts; }), has_smoke,
       "Shows and records the forces of the smoke and of the hand's own movement separately, "
       "whichever is felt. It takes twice the smoke's time.");
   list.number(
       "grid", "Grid", "cells", FluidSettings::kLeastCells, FluidSettings::kMostCells, 1,
-      [](const S& s) { return static_cast<double>(s.pipeline.fluid.cells); },
-      [](S& s, double v) { s.pipeline.fluid.cells = static_cast<int>(v); }, has_smoke,
+      member([](auto& s) -> auto& { return s.pipeline.fluid.cells; }), has_smoke,
       "Cells along each edge of the smoke's box. Fewer are coarser and faster. Restarts the "
       "smoke.");
   return list.take();
-}
-
-/// Adds the controls of plans that are optimised for what is felt.
-void add_felt_controls(ControlList& list) {
-  using S = LiveSettings;
-  list.number(
-      "felt_weight", "What is felt", "", 0, 1, 0.05,
-      [](const S& s) { return s.pipeline.plan.felt_weight; },
-      [](S& s, double v) { s.pipeline.plan.felt_weight = v; }, takes_felt_weight,
-      "Weight of the skin model when Best and Fast choose pressures; the paths are then "
-      "synchronised. 0 is off, 0.9 is recommended. Nobody has felt it.");
-  list.number(
-      "strength_weight", "Strength", "", 0, 1, 0.05,
-      [](const S& s) { return s.pipeline.plan.strength_weight; },
-      [](S& s, double v) { s.pipeline.plan.strength_weight = v; }, is_felt,
-      "Preset Felt: weight of a stronger percept against a truer shape, when the number of paths "
-      "is chosen. Nobody has felt it.");
-  list.number(
-      "am_felt_weight", "What is felt of AM", "", 0, 1, 0.05,
-      [](const S& s) { return s.pipeline.am.felt_weight; },
-      [](S& s, double v) { s.pipeline.am.felt_weight = v; }, is_am,
-      "Weight of the skin model in the choice of pressures and phases of the focal points. "
-      "0 is off. Nobody has felt it.");
 }
 
 std::vector<RunControl> plan_controls() {
   using S = LiveSettings;
   ControlList list("Plan");
   list.choice(
-      "method", "Method", kMethods,
-      [](const S& s) { return static_cast<double>(s.pipeline.method); },
-      [](S& s, double v) { s.pipeline.method = static_cast<Method>(v); }, always,
+      "method", "Method", kMethods, member([](auto& s) -> auto& { return s.pipeline.method; }),
+      always,
       "PRO-STM moves focal points along closed paths; AM holds them still and modulates them.");
   list.choice(
       "preset", "Preset", kPresets,
-      [](const S& s) { return static_cast<double>(s.pipeline.plan.preset); }, set_preset,
+      {[](const S& s) { return static_cast<double>(s.pipeline.plan.preset); }, set_preset},
       is_pro_stm,
-      "How paths are planned: the nearest field, a short search, or the paper's own method.");
-  list.number(
-      "paths", "Paths", "", 1, kMaxPaths, 1,
-      [](const S& s) {
-        return static_cast<double>(is_am(s) ? s.pipeline.am.foci : s.pipeline.plan.paths);
-      },
-      set_paths, always, "Simultaneous focal points, which share the array's power.");
-  list.number(
-      "speed", "Speed", "m/s", 2, 8, 0.5, [](const S& s) { return s.pipeline.plan.speed; },
-      [](S& s, double v) { s.pipeline.plan.speed = v; }, is_pro_stm,
-      "Speed of the focal points. The longest path is the speed divided by the draw rate.");
-  list.number(
-      "gain", "Gain γ", "", 0.5, 3, 0.1, [](const S& s) { return s.pipeline.plan.gain; },
-      [](S& s, double v) { s.pipeline.plan.gain = v; }, is_pro_stm,
-      "Ratio of the rendered pressure to the perceived pressure of a path.");
-  list.toggle(
-      "array_width", "Array's own width",
-      [](const S& s) { return s.pipeline.array_width ? 1.0 : 0.0; },
-      [](S& s, double v) { s.pipeline.array_width = v != 0.0; }, is_fitted,
-      "Presets Best, Fast and Felt use the width of the array's focus at the hand.");
+      "How paths are planned: for the nearest field, by a short search, for what is felt, or by "
+      "the paper's own method.");
+  list.number("paths", "Paths", "", 1, kMaxPaths, 1,
+              {[](const S& s) {
+                 return static_cast<double>(is_am(s) ? s.pipeline.am.foci : s.pipeline.plan.paths);
+               },
+               set_paths},
+              always, "Simultaneous focal points, which share the array's power.");
+  list.number("speed", "Speed", "m/s", 2, 8, 0.5,
+              member([](auto& s) -> auto& { return s.pipeline.plan.speed; }), is_pro_stm,
+              "Speed of the focal points. The longest path is the speed divided by the draw rate.");
+  list.number("gain", "Gain γ", "", 0.5, 3, 0.1,
+              member([](auto& s) -> auto& { return s.pipeline.plan.gain; }), is_pro_stm,
+              "Ratio of the rendered pressure to the perceived pressure of a path.");
+  list.toggle("array_width", "Array's own width",
+              member([](auto& s) -> auto& { return s.pipeline.array_width; }), is_fitted,
+              "Presets Best, Fast and Felt use the width of the array's focus at the hand.");
   list.number(
       "sigma", "Width σ", "mm", 4, 20, 0.1,
-      [](const S& s) { return std::round(1e4 * s.pipeline.sigma()) * 0.1; }, set_sigma, always,
+      {[](const S& s) { return std::round(1e4 * s.pipeline.sigma()) * 0.1; }, set_sigma}, always,
       "Width of a focal point that the planner assumes, unless the array's own width is used.");
+  list.number("bending", "Smoothness", "", 0, 0.3, 0.01,
+              member([](auto& s) -> auto& { return s.pipeline.plan.fit_bending; }), is_fitted,
+              "Cost of bends in a path, for presets Best, Fast and Felt.");
+  list.number("felt_weight", "What is felt", "", 0, 1, 0.05,
+              member([](auto& s) -> auto& { return s.pipeline.plan.felt_weight; }),
+              takes_felt_weight,
+              "Weight of the skin model when Best and Fast choose pressures; the paths are then "
+              "synchronised. 0 is off, 0.9 is recommended. Nobody has felt it.");
   list.number(
-      "bending", "Smoothness", "", 0, 0.3, 0.01,
-      [](const S& s) { return s.pipeline.plan.fit_bending; },
-      [](S& s, double v) { s.pipeline.plan.fit_bending = v; }, is_fitted,
-      "Cost of bends in a path, for presets Best, Fast and Felt.");
-  add_felt_controls(list);
+      "strength_weight", "Strength", "", 0, 1, 0.05,
+      member([](auto& s) -> auto& { return s.pipeline.plan.strength_weight; }), is_felt,
+      "Preset Felt: weight of a stronger percept against a truer shape, when the number of paths "
+      "is chosen. Nobody has felt it.");
+  list.number("am_felt_weight", "What is felt of AM", "", 0, 1, 0.05,
+              member([](auto& s) -> auto& { return s.pipeline.am.felt_weight; }), is_am,
+              "Weight of the skin model in the choice of pressures and phases of the focal points. "
+              "0 is off. Nobody has felt it.");
   return list.take();
 }
 
 std::vector<RunControl> output_controls() {
-  using S = LiveSettings;
   ControlList list("Output");
-  list.choice(
-      "switch", "Take over", kSwitches,
-      [](const S& s) { return static_cast<double>(s.pipeline.emit.switch_at); },
-      [](S& s, double v) { s.pipeline.emit.switch_at = static_cast<SwitchAt>(v); }, is_pro_stm,
-      "Whether a new plan waits until each path's loop ends, or interrupts it.");
-  list.number(
-      "tilt", "Tilt compensation", "×", 1, 4, 0.1,
-      [](const S& s) { return s.pipeline.emit.tilt_bound; },
-      [](S& s, double v) { s.pipeline.emit.tilt_bound = v; }, always,
-      "Largest factor on the pressure to compensate for tilted skin; 1 is off.");
-  list.number(
-      "am_frequency", "Modulation", "Hz", 50, 300, 10,
-      [](const S& s) { return s.pipeline.emit.am_frequency; },
-      [](S& s, double v) { s.pipeline.emit.am_frequency = v; }, is_am,
-      "Modulation frequency of the intensity of AM's focal points.");
-  list.choice(
-      "am_waveform", "Waveform", kWaveforms,
-      [](const S& s) { return static_cast<double>(s.pipeline.emit.am_waveform); },
-      [](S& s, double v) { s.pipeline.emit.am_waveform = static_cast<Waveform>(v); }, is_am,
-      "Waveform of the modulation.");
+  list.choice("switch", "Take over", kSwitches,
+              member([](auto& s) -> auto& { return s.pipeline.emit.switch_at; }), is_pro_stm,
+              "Whether a new plan waits until each path's loop ends, or interrupts it.");
+  list.number("tilt", "Tilt compensation", "×", 1, 4, 0.1,
+              member([](auto& s) -> auto& { return s.pipeline.emit.tilt_bound; }), always,
+              "Largest factor on the pressure to compensate for tilted skin; 1 is off.");
+  list.number("am_frequency", "Modulation", "Hz", 50, 300, 10,
+              member([](auto& s) -> auto& { return s.pipeline.emit.am_frequency; }), is_am,
+              "Modulation frequency of the intensity of AM's focal points.");
+  list.choice("am_waveform", "Waveform", kWaveforms,
+              member([](auto& s) -> auto& { return s.pipeline.emit.am_waveform; }), is_am,
+              "Waveform of the modulation.");
   return list.take();
 }
 
 std::vector<RunControl> hand_controls() {
   using S = LiveSettings;
   ControlList list("Hand");
-  list.choice(
-      "source", "Hands from", kSources, [](const S& s) { return place(kSources, s.source); },
-      [](S& s, double v) { s.source = chosen(kSources, v); }, always,
-      "Source of the hands when the page's own hand is off.", has_source);
-  list.toggle(
-      "prediction", "Prediction",
-      [](const S& s) { return s.pipeline.track.prediction > 0.0 ? 1.0 : 0.0; },
-      [](S& s, double v) {
-        s.pipeline.track.prediction = v != 0.0 ? TrackSettings{}.prediction : 0.0;
-      },
-      always, "Extrapolates tracked hands by the latency until they are felt.");
+  list.choice("source", "Hands from", kSources,
+              {[](const S& s) { return place(kSources, s.source); },
+               [](S& s, double v) { s.source = chosen(kSources, v); }},
+              always, "Source of the hands when the page's own hand is off.", has_source);
+  list.toggle("prediction", "Prediction",
+              {[](const S& s) { return s.pipeline.track.prediction > 0.0 ? 1.0 : 0.0; },
+               [](S& s, double v) {
+                 s.pipeline.track.prediction = v != 0.0 ? TrackSettings{}.prediction : 0.0;
+               }},
+              always, "Extrapolates tracked hands by the latency until they are felt.");
   return list.take();
 }
 
