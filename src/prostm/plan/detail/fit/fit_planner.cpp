@@ -349,6 +349,7 @@ void FitPlanner::append(const PatchTask& task, Plan& plan, PlanStats& stats) {
   }
   plan.loop = in_step_ ? loop_.period : 0.0;
   last_period_ = plan.loop;
+  stats.cost += static_cast<double>(fit_.cost);
   stats.leaves += paths;
 }
 
@@ -357,7 +358,7 @@ void FitPlanner::start_from(const Loops& loops, const TargetField& target) {
   phases_.forget();
   fit_.loops = loops;
   origin_ = target.origin;
-  has_previous_ = true;
+  has_previous_ = follows_ = true;
 }
 
 void FitPlanner::find(const PatchTask& task, PlanStats& stats) {
@@ -382,9 +383,10 @@ void FitPlanner::find(const PatchTask& task, PlanStats& stats) {
     if (felt_) felt_->forget();
     last_period_ = 0.0;
   }
-  stats.cost_evaluations += search_.run(task.paths, continues, fit_);
+  stats.cost_evaluations +=
+      follows_ ? search_.follow(fit_) : search_.run(task.paths, continues, fit_);
+  follows_ = false;
   stats.cost_evaluations += search_.finish(shape_of(target).most_length, fit_);
-  stats.cost += static_cast<double>(fit_.cost);
   ending_.restart();
   mend(target, stats);
   choose_starts();

@@ -30,7 +30,7 @@ class FitPlanner : public PatchPlanner {
   void plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats) override;
 
   // The parts of plan_patch(), for planners that change the paths found before they append them.
-  /// Makes `loops` the paths from which the next plan continues. @param target whose origin their
+  /// Makes the next plan one of these paths, fitted to its target. @param target whose origin their
   /// coordinates are relative to.
   void start_from(const Loops& loops, const TargetField& target);
   /// Finds valid paths with playable pressures.
@@ -84,6 +84,7 @@ class FitPlanner : public PatchPlanner {
   Fit fit_;                         // the last plan; start of the next
   Vec2 origin_ = Vec2::Zero();      // origin of the target that fit_ is for [m]
   bool has_previous_ = false, is_flat_ = false, is_alone_ = true;
+  bool follows_ = false;      // whether the next plan is one of the paths given
   double last_period_ = 0.0;  // period of the last plan's loop [s]
   double rendered_ = 0.0;     // effective pressure that is 1 in fit_
   double full_scale_ = 0.0;   // rendered pressure at full output

@@ -271,6 +271,12 @@ int Search::run(int paths, bool continues, Fit& best) {
   return used;
 }
 
+int Search::follow(Fit& fit) {
+  const int used = descend(coarse_, settings_.warm_evaluations, search_end_, fit);
+  reached_ = fit.cost / static_cast<float>(coarse_.square_norm());
+  return used;
+}
+
 void Search::solve(const PlayBounds& bounds, Fit& fit) {
   ReconstructionSettings& settings = descent_.settings().reconstruction;
   const ReconstructionSettings searched = settings;

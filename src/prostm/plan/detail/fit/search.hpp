@@ -48,6 +48,9 @@ class Search {
   /// Fits at most `paths` paths. @param continues whether to start from best.loops, the paths of
   /// the previous plan. @return evaluations used.
   int run(int paths, bool continues, Fit& best);
+  /// Fits the paths of `fit`, which are not those of the previous plan, without trying others.
+  /// @return evaluations used.
+  int follow(Fit& fit);
   /// Sets σ of focal points, from the next target on [mm].
   void set_sigma(double sigma);
   /// Sets the limits of the emission, from the next target on.
