@@ -16,7 +16,8 @@ constexpr double kLeastDistance = 1e-6;  // [mm]
 
 /// Returns the upper bound of a part of a pair, a sum of two products.
 template <class Real>
-Real largest(const FeltSkins<Real>& skins, std::span<const FeltSource<Real>> sources) {
+Real largest(std::span<const FocusResponse<Real>> skins,
+             std::span<const FeltSource<Real>> sources) {
   Real table = 0, source = 0;
   for (const FocusResponse<Real>& skin : skins) {
     for (const auto& row : skin.row) {
@@ -114,7 +115,7 @@ void FeltLoss<Real>::set_target(const FeltCells& cells) {
 }
 
 template <class Real>
-void FeltLoss<Real>::set_sources(const FeltSkins<Real>& skins,
+void FeltLoss<Real>::set_sources(std::span<const FocusResponse<Real>> skins,
                                  std::span<const FeltSource<Real>> sources) {
   Impl& d = *impl_;
   d.places.assign(sources.begin(), sources.end());

@@ -51,7 +51,8 @@ class FeltLoss {
   /// Sets the cells. @pre some pressure is above 0.
   void set_target(const FeltCells& cells);
   /// Sets the sources of pressure. @pre as many skins as in the constructor.
-  void set_sources(const FeltSkins<Real>& skins, std::span<const FeltSource<Real>> sources);
+  void set_sources(std::span<const FocusResponse<Real>> skins,
+                   std::span<const FeltSource<Real>> sources);
   /// Computes the loss (W4). @param amplitude signed amplitude of each source; not all 0.
   Real evaluate(std::span<const Real> amplitude);
   /// Same as evaluate(), and makes `times` times this loudness, on each skin, the one to keep.

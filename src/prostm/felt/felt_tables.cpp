@@ -21,24 +21,30 @@ std::vector<SkinSettings> felt_skins() {
   return skins;
 }
 
-FeltTables::FeltTables(std::size_t skins) {
-  const std::vector<SkinSettings> settings = felt_skins();
-  for (std::size_t s = 0; s < skins; ++s) models_.emplace_back(settings[s]);
-  for (Entry& entry : entries_) entry.skins.resize(skins);
+FeltTables::FeltTables() {
+  for (const SkinSettings& skin : felt_skins()) models_.emplace_back(skin);
+  for (Entry& entry : entries_) entry.skins.resize(kFeltSkins);
 }
 
-const FeltSkins<float>& FeltTables::of(double sigma, double period) {
-  const double rounded = kSigmaStep * std::max(1.0, std::round(sigma / kSigmaStep));
-  for (const Entry& entry : entries_) {
-    if (entry.sigma == rounded && entry.period == period) return entry.skins;
-  }
-  Entry& made = entries_[oldest_];
+/// Returns the entry of a focus and a period, which replaces the oldest unless it exists.
+FeltTables::Entry& FeltTables::entry_of(double sigma, double period) {
+  for (Entry& entry : entries_)
+    if (entry.sigma == sigma && entry.period == period) return entry;
+  Entry& entry = entries_[oldest_];
   oldest_ = (oldest_ + 1) % entries_.size();
-  made.sigma = rounded;
-  made.period = period;
-  for (std::size_t s = 0; s < models_.size(); ++s)
-    maker_.make(models_[s], rounded, period, made.skins[s]);
-  return made.skins;
+  entry.sigma = sigma;
+  entry.period = period;
+  entry.made = 0;
+  return entry;
+}
+
+std::span<const FocusResponse<float>> FeltTables::of(double sigma, double period,
+                                                     std::size_t skins) {
+  const double rounded = kSigmaStep * std::max(1.0, std::round(sigma / kSigmaStep));
+  Entry& entry = entry_of(rounded, period);
+  for (; entry.made < skins; ++entry.made)
+    maker_.make(models_[entry.made], rounded, period, entry.skins[entry.made]);
+  return std::span(entry.skins).first(skins);
 }
 
 }  // namespace prostm

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "prostm/acoustics/skin/skin_model.hpp"
@@ -20,21 +21,25 @@ std::vector<SkinSettings> felt_skins();
 /// Cache of the last few tables. Only construction allocates.
 class FeltTables {
  public:
-  /// @param skins number of skins, the first of felt_skins(), 1 to kFeltSkins.
-  explicit FeltTables(std::size_t skins = kFeltSkins);
+  FeltTables();
 
-  /// Returns the tables of these skins for a focus and a period [s]. They stay valid until the
-  /// cache is filled with others. @param sigma σ of the focus [m], rounded to 0.2 mm.
-  const FeltSkins<float>& of(double sigma, double period);
+  /// Returns the tables of the first `skins` of felt_skins(), at most all, for a focus and a period
+  /// [s]. They stay valid until the cache is filled with others. @param sigma σ of the focus [m],
+  /// rounded to 0.2 mm.
+  std::span<const FocusResponse<float>> of(double sigma, double period,
+                                           std::size_t skins = kFeltSkins);
 
  private:
   struct Entry {
     double sigma = 0.0, period = 0.0;  // [m], [s]
+    std::size_t made = 0;              // skins whose tables are made
     FeltSkins<float> skins;
   };
+  Entry& entry_of(double sigma, double period);
+
   std::vector<SkinModel> models_;
   FocusResponseMaker maker_;
-  std::array<Entry, 12> entries_;
+  std::array<Entry, 24> entries_;
   std::size_t oldest_ = 0;
 };
 

@@ -30,10 +30,21 @@ bool has_counted_pressure(const TargetField& target, double maximum) {
   return maximum > 0.0 && (target.weight.empty() || CellWeights(target, maximum).any_pressure());
 }
 
-std::unique_ptr<PatchPlanner> make_fit(const PlanSettings& settings, std::size_t max_cells) {
-  if (settings.traits().chooses_by_percept)
-    return std::make_unique<FeltPlanner>(settings, max_cells);
-  return std::make_unique<FitPlanner>(settings, max_cells);
+/// Returns a planner for each patch, of a fitted preset; else none.
+std::vector<std::unique_ptr<PatchPlanner>> make_fits(const PlanSettings& settings,
+                                                     std::size_t max_cells) {
+  std::vector<std::unique_ptr<PatchPlanner>> fits;
+  if (!settings.traits().is_fitted()) return fits;
+  const bool felt = settings.traits().chooses_by_percept;
+  const auto tables = felt ? std::make_shared<FeltTables>() : nullptr;
+  for (int patch = 0; patch < kMaxPatches; ++patch) {
+    if (felt) {
+      fits.push_back(std::make_unique<FeltPlanner>(settings, max_cells, tables));
+    } else {
+      fits.push_back(std::make_unique<FitPlanner>(settings, max_cells));
+    }
+  }
+  return fits;
 }
 
 }  // namespace
@@ -44,17 +55,14 @@ struct Planner::Scratch {
         max_cells(cells),
         raster(cells),
         kmeans(cells),
-        refiner(CostSettings(s), s.paths, s.samples, s.refine_iterations) {
+        refiner(CostSettings(s), s.paths, s.samples, s.refine_iterations),
+        fits(make_fits(s, cells)) {
     x.reserve(static_cast<std::size_t>(s.paths) * static_cast<std::size_t>(s.samples));
-    if (s.traits().is_fitted()) {
-      for (int patch = 0; patch < kMaxPatches; ++patch) fits.push_back(make_fit(s, cells));
-    }
   }
 
-  /// Appends at most `paths` paths for one patch to `plan` and adds to `stats` (all but the total).
-  /// @param highest pressure of the frame.
-  PlanStatus plan_patch(const TargetField& target, double highest, int patch, int paths,
-                        double budget, bool is_alone, double time, Plan& plan, PlanStats& stats,
+  /// Appends the paths for one patch to `plan` and adds to `stats` (all but the total).
+  /// @param task without its maximum and full scale. @param highest pressure of the frame.
+  PlanStatus plan_patch(PatchTask task, double highest, Plan& plan, PlanStats& stats,
                         PlanTrace* trace);
   /// Rendered pressure at full output. @param highest pressure of the frame.
   double full_scale(double highest) const {
@@ -168,22 +176,21 @@ void Planner::Scratch::append(const TargetField& target, int patch, double maxim
   }
 }
 
-PlanStatus Planner::Scratch::plan_patch(const TargetField& target, double highest, int patch,
-                                        int paths, double budget, bool is_alone, double time,
-                                        Plan& plan, PlanStats& stats, PlanTrace* trace) {
+PlanStatus Planner::Scratch::plan_patch(PatchTask task, double highest, Plan& plan,
+                                        PlanStats& stats, PlanTrace* trace) {
   StageTimer timer;
-  const double maximum = highest_pressure(target, max_cells);
+  const TargetField& target = task.target;
+  const double maximum = task.maximum = highest_pressure(target, max_cells);
   if (maximum < 0.0) return PlanStatus::InvalidTarget;
+  PatchPlanner* fit = fits.empty() ? nullptr : fits[static_cast<std::size_t>(task.patch)].get();
   if (!has_pressure(target, maximum)) {
-    if (!fits.empty()) fits[static_cast<std::size_t>(patch)]->reset();
+    if (fit != nullptr) fit->reset();
     return PlanStatus::EmptyTarget;
   }
-  if (!fits.empty()) {
+  if (fit != nullptr) {
     if (trace != nullptr) *trace = {};
-    fits[static_cast<std::size_t>(patch)]->plan_patch(
-        {target, maximum, full_scale(std::max(highest, maximum)), patch, paths, budget, is_alone,
-         time},
-        plan, stats);
+    task.full_scale = full_scale(std::max(highest, maximum));
+    fit->plan_patch(task, plan, stats);
     return PlanStatus::Planned;
   }
   collect_points(target, maximum);
@@ -194,7 +201,7 @@ PlanStatus Planner::Scratch::plan_patch(const TargetField& target, double highes
   stats.clusters += static_cast<int>(clusters.centre.size());
   stats.kmeans += timer.lap();
 
-  initial_paths(paths, stats, timer, target.origin, trace);
+  initial_paths(task.paths, stats, timer, target.origin, trace);
 
   const RefineResult refined = refiner.run(raster, x);
   stats.cost += refined.cost;
@@ -204,7 +211,7 @@ PlanStatus Planner::Scratch::plan_patch(const TargetField& target, double highes
     const int kept = make_valid(x, settings.samples, kMmPerMetre * settings.max_length());
     x.resize(static_cast<std::size_t>(kept) * static_cast<std::size_t>(settings.samples));
   }
-  append(target, patch, maximum, plan, stats);
+  append(target, task.patch, maximum, plan, stats);
   stats.refine += timer.lap();
   return PlanStatus::Planned;
 }
@@ -226,9 +233,11 @@ PlanStatus Planner::plan(const TargetField& target, Plan& plan, PlanStats& stats
   StageTimer timer;
   plan.clear();
   stats = {};
-  const PlanStatus status =
-      scratch_->plan_patch(target, 0.0, 0, scratch_->settings.paths, scratch_->settings.budget,
-                           true, scratch_->next_time(), plan, stats, trace);
+  const PatchTask task{.target = target,
+                       .paths = scratch_->settings.paths,
+                       .budget = scratch_->settings.budget,
+                       .time = scratch_->next_time()};
+  const PlanStatus status = scratch_->plan_patch(task, 0.0, plan, stats, trace);
   stats.total = timer.seconds();
   return status;
 }
@@ -254,8 +263,13 @@ PlanStatus Planner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats)
       scratch_->settings.budget / static_cast<double>(std::max<std::ptrdiff_t>(planned, 1));
   for (std::size_t i = 0; i < frame.patches.size(); ++i) {
     if (share[i] == 0 && pressure[i] > 0.0) continue;
-    scratch_->plan_patch(frame.patches[i], highest, static_cast<int>(i), share[i], budget,
-                         planned < 2, frame.time, plan, stats, nullptr);
+    const PatchTask task{.target = frame.patches[i],
+                         .patch = static_cast<int>(i),
+                         .paths = share[i],
+                         .budget = budget,
+                         .is_alone = planned < 2,
+                         .time = frame.time};
+    scratch_->plan_patch(task, highest, plan, stats, nullptr);
   }
   // a hand that has left starts without a previous plan when it comes back
   for (std::size_t i = frame.patches.size(); i < scratch_->fits.size(); ++i) {

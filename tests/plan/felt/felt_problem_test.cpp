@@ -76,7 +76,7 @@ TEST(FeltProblem, HasTheGradientOfItsCost) {
     settings.paths = static_cast<int>(kPaths);
     settings.felt_weight = weight;
     settings.felt_points = true;
-    FeltProblem problem(settings, kFinerFeltCells);
+    FeltProblem problem(settings);
     const TargetField field = fields::make(fields::Pattern::FourPlumes, 10);
     problem.set_target(field, max_pressure(field), 4.3e-3);
     Random random(3);

@@ -10,11 +10,11 @@ namespace prostm::planning {
 /// One patch of a frame, and what a plan for it may use.
 struct PatchTask {
   const TargetField& target;
-  double maximum;       ///< its largest pressure, > 0
-  double full_scale;    ///< rendered pressure at full output, > 0 [unit of the target]
-  int patch = 0;        ///< its index in the frame
-  int paths;            ///< maximum number of paths
-  double budget = 0.0;  ///< time limit [s]; 0: only the counts of the settings apply
+  double maximum = 0.0;     ///< its largest pressure, > 0
+  double full_scale = 0.0;  ///< rendered pressure at full output, > 0 [unit of the target]
+  int patch = 0;            ///< its index in the frame
+  int paths = 0;            ///< maximum number of paths
+  double budget = 0.0;      ///< time limit [s]; 0: only the counts of the settings apply
   /// Whether no other patch has paths in this plan: with several patches, all use the same loop.
   bool is_alone = true;
   double time = 0.0;  ///< time of the frame [s]

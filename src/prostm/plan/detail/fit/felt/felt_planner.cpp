@@ -16,9 +16,11 @@ constexpr FeltEffort kMovingEffort = {25, 0.5F}, kMovedEffort = {12, 0.5F};
 constexpr int kPlansPerRival = 3;     // plans of a sequence for each comparison
 constexpr float kHysteresis = 0.02F;  // cost that another number of paths must save
 
-/// Settings of the felt steps, whose cost is that of the percept alone.
-PlanSettings step_settings(PlanSettings settings) {
+/// Settings of the felt steps, whose cost is that of the percept alone. @param points whether
+/// points move.
+PlanSettings step_settings(PlanSettings settings, bool points) {
   settings.felt_weight = 1.0;
+  settings.felt_points = points;
   return settings;
 }
 
@@ -35,9 +37,9 @@ FeltTuning fine_tuning() {
   return tuning;
 }
 
-PlanSettings moving_settings(PlanSettings settings) {
-  settings.felt_points = true;
-  return step_settings(settings);
+/// Few cells, and the nominal skin alone.
+FeltScope rough_scope(const std::shared_ptr<FeltTables>& tables) {
+  return {.most_cells = kRoughCells, .skins = 1, .tables = tables};
 }
 
 /// Bounds of a circle or a line to start from.
@@ -56,13 +58,15 @@ PatchTask with_paths(PatchTask task, int paths) {
 
 }  // namespace
 
-FeltPlanner::FeltPlanner(const PlanSettings& settings, std::size_t max_cells)
+FeltPlanner::FeltPlanner(const PlanSettings& settings, std::size_t max_cells,
+                         const std::shared_ptr<FeltTables>& tables)
     : settings_(settings),
-      rough_(step_settings(settings), rough_tuning(),
-             {.most_cells = kRoughCells, .skins = 1, .keeps_loudness = false}),
-      moving_(moving_settings(settings), fine_tuning(),
-              {.most_cells = kRoughCells, .skins = 1, .keeps_loudness = false}),
-      fine_(step_settings(settings), fine_tuning(), {.keeps_loudness = false}),
+      rough_(step_settings(settings, false), rough_tuning(), rough_scope(tables),
+             FeltLoudness::Highest),
+      moving_(step_settings(settings, true), fine_tuning(), rough_scope(tables),
+              FeltLoudness::Highest),
+      fine_(step_settings(settings, false), fine_tuning(), {.tables = tables},
+            FeltLoudness::Highest),
       regions_(max_cells) {
   const auto add = [&](int paths, Start start) {
     candidates_.push_back({FitPlanner(settings, max_cells), paths, start});

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "prostm/plan/detail/fit/felt/felt_step.hpp"
@@ -16,7 +17,9 @@ namespace prostm::planning {
 /// its percept. In a sequence, continues the last plan, and compares it with others by turns.
 class FeltPlanner : public PatchPlanner {
  public:
-  FeltPlanner(const PlanSettings& settings, std::size_t max_cells);
+  /// @param tables shared by the planners of all patches.
+  FeltPlanner(const PlanSettings& settings, std::size_t max_cells,
+              const std::shared_ptr<FeltTables>& tables);
 
   void reset() override;
   void plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats) override;

@@ -23,13 +23,15 @@ std::size_t most_felt_points(const PlanSettings& settings) {
          static_cast<std::size_t>(halved ? 2 * samples : samples);
 }
 
-FeltProblem::FeltProblem(const PlanSettings& settings, std::size_t most_cells, std::size_t skins)
+FeltProblem::FeltProblem(const PlanSettings& settings, const FeltScope& scope)
     : weight_(static_cast<float>(settings.felt_weight)),
       moves_(settings.felt_points),
-      tables_(skins),
-      cells_(most_cells),
-      loss_(skins, most_cells, most_felt_points(settings), FeltWeights(), settings.felt_points),
-      envelope_(most_cells) {
+      skins_(scope.skins),
+      tables_(scope.tables ? scope.tables : std::make_shared<FeltTables>()),
+      cells_(scope.most_cells),
+      loss_(scope.skins, scope.most_cells, most_felt_points(settings), FeltWeights(),
+            settings.felt_points),
+      envelope_(scope.most_cells) {
   const std::size_t most = most_felt_points(settings);
   sources_.reserve(most);
   paths_.reserve(kMaxPaths);
@@ -63,7 +65,7 @@ void FeltProblem::set_points(const StepPoints& points, const CommonLoop& loop) {
     paths_[k].sources(first_, std::span(sources_).subspan(k * n, n));
   }
   demand_.set(paths_, n);
-  loss_.set_sources(tables_.of(sigma_, loop.period), sources_);
+  loss_.set_sources(tables_->of(sigma_, loop.period, skins_), sources_);
   if (weight_ < 1.0F)
     envelope_.set_points(cells_.cells(), points, static_cast<float>(kMmPerMetre * sigma_));
 }

@@ -2,6 +2,7 @@
 /// Rendering error of closed paths in step, of the percept and of the field of Eq. (1), as a
 /// function of pressures and points: (P19) and (P20).
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -22,14 +23,27 @@ struct FeltRating {
   float strength = 0.0F;  ///< largest √e on the nominal skin over the output (P20) [µm per unit]
 };
 
+/// The cells and skins on which plans are felt.
+struct FeltScope {
+  std::size_t most_cells = kFeltCells;
+  std::size_t skins = kFeltSkins;  ///< number of skins, the first of felt_skins()
+  /// Tables that several problems share; null: tables of its own.
+  std::shared_ptr<FeltTables> tables = nullptr;
+};
+/// Moving points benefits from finer cells than choosing pressures does.
+inline FeltScope felt_scope(const PlanSettings& settings) {
+  return {.most_cells = settings.felt_points ? kFinerFeltCells : kFeltCells};
+}
+
 /// Maximum number of points of a plan whose pressures are chosen.
 std::size_t most_felt_points(const PlanSettings& settings);
 
 /// The cost of the felt step. Only construction allocates.
 class FeltProblem {
  public:
-  /// @param most_cells maximum number of cells. @param skins as in FeltTables.
-  FeltProblem(const PlanSettings& settings, std::size_t most_cells, std::size_t skins = kFeltSkins);
+  explicit FeltProblem(const PlanSettings& settings)
+      : FeltProblem(settings, felt_scope(settings)) {}
+  FeltProblem(const PlanSettings& settings, const FeltScope& scope);
 
   /// Sets the target. @param maximum its largest pressure, > 0. @param sigma σ of a focus [m].
   void set_target(const TargetField& target, double maximum, double sigma);
@@ -66,7 +80,8 @@ class FeltProblem {
   double sigma_ = 1.0;  // σ of a focus [m]
   float spare_ = 1.0F;  // factor on the loudness to keep, if points move
   float square_ = 1.0F, output_ = 1.0F;
-  FeltTables tables_;
+  const std::size_t skins_;
+  std::shared_ptr<FeltTables> tables_;
   FeltCells cells_;
   FeltLoss<float> loss_;
   EnvelopeLack envelope_;

@@ -27,10 +27,11 @@ void join(const Loops& loops, const LapStarts& starts, int pieces, NodeArray& pr
 
 }  // namespace
 
-FeltStep::FeltStep(const PlanSettings& settings, const FeltTuning& tuning, const FeltScope& scope)
+FeltStep::FeltStep(const PlanSettings& settings, const FeltTuning& tuning, const FeltScope& scope,
+                   FeltLoudness loudness)
     : tuning_(tuning),
-      keeps_loudness_(scope.keeps_loudness),
-      problem_(settings, scope.most_cells, scope.skins),
+      loudness_(loudness),
+      problem_(settings, scope),
       descent_((settings.felt_points ? 3 : 1) * most_felt_points(settings)) {
   const std::size_t most = most_felt_points(settings);
   kept_.points.reserve(most);
@@ -149,7 +150,7 @@ void FeltStep::make_as_loud(const FeltProblem::Loudness& wanted, float most_pres
   const FeltProblem::Loudness found = problem_.loudness();
   const float highest = *std::max_element(root_.begin(), root_.end());
   float scale = std::min(wanted.output / found.output, most_pressure / (highest * highest));
-  if (keeps_loudness_) scale = std::min(scale, wanted.felt / found.felt);
+  if (loudness_ == FeltLoudness::Kept) scale = std::min(scale, wanted.felt / found.felt);
   for (float& root : root_) root *= std::sqrt(scale);
 }
 
@@ -159,7 +160,8 @@ int FeltStep::choose_pressures(const Loops& loops, const LapStarts& starts, cons
   take_fit(pressure);
   const bool moved = kept_.from == Kept::From::MovedPoints;
   if (moved) begin_at_kept();
-  const bool same_loudness = moved && keeps_loudness_;  // that of the fit before points moved
+  const bool same_loudness =
+      moved && loudness_ == FeltLoudness::Kept;  // that of the fit before points moved
   const float fit_cost = same_loudness ? 0.0F : problem_.keep_loudness(moved ? root_ : fitted_);
   const FeltProblem::Loudness wanted = moved ? kept_.wanted : problem_.loudness();
   const auto cost = [&](std::span<const float> root, std::span<float> gradient) {

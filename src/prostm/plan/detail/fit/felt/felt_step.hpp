@@ -3,6 +3,7 @@
 /// to (P21).
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -36,25 +37,17 @@ struct FeltTuning {
   FeltEffort moving = {50, 0.5F}, moving_again = {25, 0.5F};
 };
 
-/// The cells and skins of a felt step, and the loudness of its result.
-struct FeltScope {
-  std::size_t most_cells = kFeltCells;
-  std::size_t skins = kFeltSkins;  ///< as in FeltTables
-  /// Whether the result is as loud as the initial pressures, if the array can render that; else it
-  /// is as loud as the array can render it.
-  bool keeps_loudness = true;
-};
-/// Moving points benefits from finer cells than choosing pressures does.
-inline FeltScope felt_scope(const PlanSettings& settings) {
-  return {.most_cells = settings.felt_points ? kFinerFeltCells : kFeltCells};
-}
+/// How loud the result of a felt step is: like the initial pressures if the array can render that,
+/// or as loud as the array can render it.
+enum class FeltLoudness : std::uint8_t { Kept, Highest };
 
 /// The felt step of a planner. Only construction allocates.
 class FeltStep {
  public:
   explicit FeltStep(const PlanSettings& settings, const FeltTuning& tuning = {})
-      : FeltStep(settings, tuning, felt_scope(settings)) {}
-  FeltStep(const PlanSettings& settings, const FeltTuning& tuning, const FeltScope& scope);
+      : FeltStep(settings, tuning, felt_scope(settings), FeltLoudness::Kept) {}
+  FeltStep(const PlanSettings& settings, const FeltTuning& tuning, const FeltScope& scope,
+           FeltLoudness loudness);
 
   /// Forgets the last plan.
   void forget();
@@ -105,7 +98,7 @@ class FeltStep {
                    int pieces, std::span<const float> x, std::span<float> gradient);
 
   const FeltTuning tuning_;
-  const bool keeps_loudness_;
+  const FeltLoudness loudness_;
   FeltProblem problem_;
   QuasiNewton descent_;
   Kept kept_;
