@@ -151,7 +151,7 @@ Felt felt_of(const PlanSettings& settings) {
     const Plan plan = test::plan_of(settings, field);
     const FeltPlan found = felt_plan(plan, field, kSigma, felt_skins());
     sum.lack += found.lack;
-    // these plans have one path, or paths with the same demand for output
+    // an upper bound of the output (P20)
     double most = 0.0;
     for (const FocalPath& path : plan.paths)
       most += *std::max_element(path.pressure.begin(), path.pressure.end());
@@ -171,7 +171,7 @@ TEST(FeltPreset, TradesShapeForStrength) {
   EXPECT_GT(shape.paths, 6U);
 }
 
-TEST(FeltPreset, IsFeltBetterThanBestPressures) {
+TEST(FeltPreset, IsFeltBetterThanPressuresOfTheField) {
   PlanSettings fast = felt(0.0);
   fast.preset = Preset::Fast;
   fast.felt_weight = 1e-6;  // in step, with the pressures of the fit
