@@ -55,8 +55,9 @@ function(prostm_stage name)
   endif()
 endfunction()
 
-# One test program per folder of tests/, from all *_test.cpp in it and its subfolders; each case is one ctest entry. The target prostm_tests
-# builds them all. Cases that match prostm_alone_NAME, a filter of GoogleTest, keep real time and run beside no other.
+# One test program per folder of tests/, from all *_test.cpp in it and its subfolders; each case is one ctest entry. The
+# target prostm_tests builds them all. Filters of GoogleTest name the exceptions: cases of prostm_alone_NAME keep real
+# time and run beside no other; those of prostm_together_NAME share what takes long to compute, and are one entry.
 function(prostm_test name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${name}/*_test.cpp)
   if(PROSTM_SANITIZE STREQUAL "thread" AND DEFINED prostm_threaded_${name})
@@ -83,7 +84,12 @@ function(prostm_test name)
                            TEST_LIST ${name}_alone DISCOVERY_TIMEOUT 60
                            PROPERTIES TIMEOUT 900 LABELS "${name}" RUN_SERIAL ON)
     endif()
-    gtest_discover_tests(test_${name} TEST_PREFIX "${name}." TEST_FILTER "-${prostm_alone_${name}}"
+    if(DEFINED prostm_together_${name})
+      add_test(NAME ${name}.together COMMAND test_${name} --gtest_brief=1 "--gtest_filter=${prostm_together_${name}}")
+      set_tests_properties(${name}.together PROPERTIES TIMEOUT 900 LABELS "${name}")
+    endif()
+    gtest_discover_tests(test_${name} TEST_PREFIX "${name}."
+                         TEST_FILTER "-${prostm_alone_${name}}:${prostm_together_${name}}"
                          DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 LABELS "${name}")
   endif()
 endfunction()

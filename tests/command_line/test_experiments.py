@@ -57,6 +57,7 @@ def test_leaving_a_paper_out_shows_what_it_determines(prostm):
     assert "noise is not determined; l" not in without["wilson"].replace("strength_noise", "")
 
 
+@pytest.mark.long
 def test_a_figure_is_drawn(prostm, tmp_path):
     sizes = []
     for names in (["howard-2023"], ["howard-2023", "wilson-2014"]):

@@ -154,6 +154,7 @@ def level_in(text):
     return int(found[1]) * (-1 if found[2] == "below" else 1), int(found[3]), int(found[4])
 
 
+@pytest.mark.long
 def test_a_plan_states_its_level_and_interval(planned):
     text, plan = planned
     sensation = plan["sensation"]

@@ -108,6 +108,7 @@ def test_a_drawing_in_the_alpha_channel_alone_gets_a_warning(prostm, tmp_path, i
     assert "its shape lies only in its transparency" in prostm("plan", "a.png", *SIZE, *options).stdout
 
 
+@pytest.mark.long
 def test_fields_and_plans_from_standard_input(program, prostm, refuses, tmp_path):
     def piped(data, *arguments):
         return subprocess.run([str(program), *arguments], cwd=tmp_path, input=data, capture_output=True, timeout=300)

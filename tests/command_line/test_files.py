@@ -150,6 +150,7 @@ def test_a_pipe_without_a_writer_is_rejected(refuses, tmp_path):
         refuses(*arguments, words=["p.", "ordinary file"])
 
 
+@pytest.mark.long
 def test_a_hand_renamed_in_every_frame_is_one_hand(prostm, refuses, tmp_path):
     header, frames = hand_lines()
 

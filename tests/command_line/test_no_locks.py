@@ -42,6 +42,7 @@ def test_recordings_are_written_and_read_with_a_warning(prostm, tmp_path, withou
     assert prostm("plan", "a.npy", "--cell-mm", "5", "--figure", "a.svg").stderr == ""
 
 
+@pytest.mark.long
 def test_a_participants_file_is_limited_to_one_run_at_a_time(program, prostm, refuses, tmp_path, without_locks):
     (tmp_path / "short.toml").write_text(SHORT)
     file = tmp_path / "answers" / "participant-7.jsonl"

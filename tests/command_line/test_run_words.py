@@ -24,6 +24,7 @@ def start(program, folder, *arguments, **options):
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
 
+@pytest.mark.long
 def test_the_verdict_precedes_the_numbers(prostm, tmp_path):
     done = prostm(*SMALL, "--stepped", "--seconds", "4", "--json", "run.json")
     lines = done.stdout.splitlines()
@@ -103,6 +104,7 @@ def on_a_terminal(program, folder, *arguments, kind="xterm"):
     return shown.decode()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("arguments, first_word", [
     ([*SMALL, "--as-fast-as-possible", "--seconds", "3"], "3.0 s of the scene"),
     (["capture", "--grid", "32", "--frames", "20", "--out", "c.h5"], "recorded 20 fields"),
@@ -114,6 +116,7 @@ def test_the_progress_line_is_erased_before_other_output(program, tmp_path, argu
     assert line.split("\r\x1b[K")[-1].startswith(first_word)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["dumb", ""])
 def test_a_terminal_without_erase_gets_no_escape_sequences(program, tmp_path, kind):
     shown = on_a_terminal(program, tmp_path, *SMALL, "--as-fast-as-possible", "--seconds", "3", kind=kind)

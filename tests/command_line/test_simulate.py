@@ -67,6 +67,7 @@ def test_the_papers_scores_have_likelihoods(simulated):
     assert guess == pytest.approx([-31.9, -51.8], abs=0.05)  # 16 binomial probabilities with p = 1/2 each
 
 
+@pytest.mark.long
 def test_a_signal_ends_it_without_files(program, tmp_path):
     running = subprocess.Popen([str(program), "study", "simulate", "--grid", "32", "--json", "s.json"], cwd=tmp_path,
                                text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)

@@ -209,6 +209,7 @@ def test_a_session_that_cannot_start_leaves_no_file(refuses, tmp_path):
     assert not list((tmp_path / "answers").iterdir())
 
 
+@pytest.mark.long
 def test_a_rehearsal_runs_all_trials_and_is_distinguished_from_answers(prostm, tmp_path):
     (tmp_path / "short.toml").write_text(SHORT)
     for participant in "12":
@@ -251,6 +252,7 @@ def test_a_killed_session_resumes_and_an_edited_one_does_not(program, prostm, re
     refuses(*STUDY, "7", "--resume", words=["begun with another protocol"])
 
 
+@pytest.mark.long
 def test_answers_that_do_not_fit_on_the_disk_are_not_counted(program, prostm, tmp_path):
     (tmp_path / "short.toml").write_text(SHORT.replace("repeats = 1", "repeats = 4"))
     prostm(*STUDY, "1", "--rehearse", "0")
@@ -320,6 +322,7 @@ def test_a_participant_replaces_another(prostm, refuses, tmp_path):
     assert "2 participants" in said
 
 
+@pytest.mark.long
 def test_status_reports_how_full_each_group_is(program, prostm, refuses, tmp_path):
     refuses("study", "status", words=["answers"])
     (tmp_path / "short.toml").write_text("[study]\ntitle = \"T\"\nparticipants = 4\n" + SHORT + "[method.b.fluid]\ncells = 32\n")

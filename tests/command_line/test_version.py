@@ -28,6 +28,7 @@ def test_the_version_names_the_commit_of_a_checkout(version):
     assert VERSION.fullmatch(version)[2] == head.stdout[:12]
 
 
+@pytest.mark.long
 def test_files_name_the_version_that_wrote_them(prostm, version, tmp_path):
     (tmp_path / "blob.json").write_text(json.dumps(blob_field()))
     prostm("plan", "blob.json", "--json", "plan.json")

@@ -19,6 +19,7 @@ def written(done):
     return [line for line in done.stdout.splitlines() if line.startswith("wrote ")]
 
 
+@pytest.mark.long
 def test_plan_field_and_solve_name_their_files(prostm, field, tmp_path):
     assert written(prostm("plan", field)) == []
     done = prostm("plan", field, "--json", "plan.json", "--figure", "plan.svg")
