@@ -204,6 +204,66 @@ TEST(FeltPreset, KeepsTheNumberOfPathsForASecond) {
   }
 }
 
+/// Distance of the point of `from` that is farthest from every point of `to` [m].
+double farthest(const Plan& from, const Plan& to) {
+  double most = 0.0;
+  for (const FocalPath& path : from.paths) {
+    for (const Vec2& x : path.points) {
+      double least = 1.0;
+      for (const FocalPath& other : to.paths)
+        for (const Vec2& y : other.points) least = std::min(least, (x - y).norm());
+      most = std::max(most, least);
+    }
+  }
+  return most;
+}
+
+/// Adds a row and a column without skin on the side of the origin.
+TargetField with_margin(const TargetField& field) {
+  TargetField out = field;
+  out.resize(field.rows + 1, field.cols + 1);
+  out.origin -= Vec2(field.cell, field.cell);
+  for (int row = 0; row < field.rows; ++row) {
+    for (int col = 0; col < field.cols; ++col) {
+      const std::size_t from = field.index(row, col), to = out.index(row + 1, col + 1);
+      out.skin[to] = field.skin[from];
+      out.pressure[to] = field.pressure[from];
+    }
+  }
+  return out;
+}
+
+TEST(FeltPreset, PlansForATargetThatStaysAreAlike) {
+  const TargetField field = fields::make(fields::Pattern::Letter, 40);
+  Planner planner(felt(0.0), with_margin(field).size());
+  const auto lack = [&](const Plan& plan) {
+    return felt_plan(plan, field, kSigma, felt_skins()).lack;
+  };
+  Plan first, last, plan;
+  PlanStats stats;
+  ASSERT_EQ(planner.plan(field, first, stats), PlanStatus::Planned);
+  last = first;
+  for (int i = 0; i < 8; ++i) {
+    ASSERT_EQ(planner.plan(field, plan, stats), PlanStatus::Planned);
+    EXPECT_LT(farthest(plan, last), 6e-3) << "plan " << i;
+    last = plan;
+  }
+  EXPECT_LT(lack(last), lack(first) + 0.005);
+  ASSERT_EQ(planner.plan(with_margin(field), plan, stats), PlanStatus::Planned);
+  EXPECT_LT(farthest(plan, last), 6e-3) << "the raster has another origin";
+}
+
+// The first plan for another target reveals that it costs more; the second is made anew.
+TEST(FeltPreset, ChoosesAmongAllPlansAgainWhenItHasBecomeWorse) {
+  Planner planner(felt(0.1), fields::kCells * fields::kCells);
+  const TargetField after = fields::make(fields::Pattern::FourPlumes, 10);
+  Plan plan;
+  PlanStats stats;
+  planner.plan(fields::make(fields::Pattern::OnePlume, 10), plan, stats);
+  for (int i = 0; i < 2; ++i) ASSERT_EQ(planner.plan(after, plan, stats), PlanStatus::Planned);
+  ASSERT_NO_FATAL_FAILURE(test::expect_same_plan(test::plan_of(felt(0.1), after), plan, 1.0));
+}
+
 TEST(FeltPreset, PlansEachHandAndForgetsOneThatLeft) {
   Planner planner(felt(0.1), fields::kCells * fields::kCells);
   TargetFrame both, first;

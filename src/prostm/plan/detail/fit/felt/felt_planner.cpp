@@ -12,9 +12,12 @@ namespace {
 
 constexpr std::size_t kRoughCells = 150;  // cells on which plans are compared, and points move
 constexpr FeltEffort kRoughEffort = {8, 0.5F};  // descent of each plan that is compared
-constexpr FeltEffort kMovingEffort = {25, 0.5F}, kMovedEffort = {12, 0.5F};
+// descents of the chosen plan: points, then pressures, first of a new plan, then from the last one
+constexpr FeltEffort kMoving = {25, 0.5F}, kMoved = {12, 0.5F};
+constexpr FeltEffort kMovingOn = {8, 0.3F}, kMovedOn = {6, 0.5F};
 constexpr int kPlansPerRival = 3;     // plans of a sequence for each comparison
-constexpr float kHysteresis = 0.02F;  // cost that another number of paths must save
+constexpr float kHysteresis = 0.04F;  // cost that another candidate must save
+constexpr float kLost = 0.05F;        // cost by which a sequence may exceed its least
 
 /// Settings of the felt steps, whose cost is that of the percept alone. @param points whether
 /// points move.
@@ -32,8 +35,10 @@ FeltTuning rough_tuning() {
 
 FeltTuning fine_tuning() {
   FeltTuning tuning;
-  tuning.moving = kMovingEffort;
-  tuning.from_moved = kMovedEffort;
+  tuning.moving = kMoving;
+  tuning.moving_on = kMovingOn;
+  tuning.from_moved = kMoved;
+  tuning.from_moved_on = kMovedOn;
   return tuning;
 }
 
@@ -110,18 +115,19 @@ float FeltPlanner::plan_roughly(const PatchTask& task, Candidate& candidate, Pla
   return found;
 }
 
-/// Makes every candidate's plan, and moves the points of the one that costs least. @return that
-/// candidate.
-std::size_t FeltPlanner::choose_among_all(const PatchTask& task, PlanStats& stats) {
-  std::size_t best = 0;
+/// Makes the plan of every candidate, and moves the points of the one that costs least. @param
+/// paths their number; 0: any. @return that candidate.
+std::size_t FeltPlanner::choose_among_all(const PatchTask& task, int paths, PlanStats& stats) {
+  std::size_t best = kNone;
   float least = std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    if (candidates_[i].paths > task.paths) continue;
+    if (candidates_[i].paths > task.paths || (paths > 0 && candidates_[i].paths != paths)) continue;
     const float own = plan_roughly(task, candidates_[i], stats);
-    if (own >= least) continue;
+    if (best != kNone && own >= least) continue;
     least = own;
     best = i;
   }
+  fine_.forget();
   move_points(task, candidates_[best].fit, stats);
   return best;
 }
@@ -129,39 +135,50 @@ std::size_t FeltPlanner::choose_among_all(const PatchTask& task, PlanStats& stat
 /// Moves the points of a plan, whose pressures fine_ then continues from.
 void FeltPlanner::move_points(const PatchTask& task, FitPlanner& fit, PlanStats& stats) {
   const StageTimer timer;
-  moving_.forget();
+  moving_.continue_from(fine_);
   moving_.set_target(task.target, task.maximum, fit.sigma());
   fit.move_felt(task, moving_, 1, stats);
   fine_.continue_from(moving_);
   stats.refine += timer.seconds();
 }
 
-/// Continues the last plan, and at some frames compares it with another candidate. @return the
-/// candidate whose plan costs less.
+/// Continues the last plan, unless another candidate, with which it is compared at some frames,
+/// costs less. @return the candidate.
 std::size_t FeltPlanner::continue_plan(const PatchTask& task, PlanStats& stats) {
-  Candidate& last = candidates_[chosen_];
-  last.fit.find(with_paths(task, last.paths), stats);
-  if (++plans_ % kPlansPerRival != 0 || !count_.may_change()) return chosen_;
-  do rival_ = (rival_ + 1) % candidates_.size();
-  while (rival_ == chosen_ || candidates_[rival_].paths > task.paths);
-  const float other = plan_roughly(task, candidates_[rival_], stats);
-  if (other >= cost(last) - kHysteresis) return chosen_;
-  fine_.forget();
-  return rival_;
+  std::size_t chosen = chosen_;
+  if (++plans_ % kPlansPerRival == 0 && count_.may_change()) {
+    do rival_ = (rival_ + 1) % candidates_.size();
+    while (rival_ == chosen_ || candidates_[rival_].paths > task.paths);
+    const float other = plan_roughly(task, candidates_[rival_], stats);
+    if (other < cost_ - kHysteresis) chosen = rival_;
+  }
+  Candidate& next = candidates_[chosen];
+  if (chosen == chosen_) {
+    next.fit.find(with_paths(task, next.paths), stats);
+  } else {
+    fine_.forget();
+  }
+  move_points(task, next.fit, stats);
+  return chosen;
 }
 
 void FeltPlanner::plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats) {
   fine_.move(kMmPerMetre * (origin_ - task.target.origin));
   origin_ = task.target.origin;
   count_.begin(regions_.count(task.target, task.maximum), task.time);
-  const bool continues = chosen_ != kNone && candidates_[chosen_].paths <= task.paths;
-  chosen_ = continues ? continue_plan(task, stats) : choose_among_all(task, stats);
+  const bool follows = chosen_ != kNone && candidates_[chosen_].paths <= task.paths;
+  const bool continues = follows && cost_ <= least_cost_ + kLost;
+  const int paths = follows && !count_.may_change() ? candidates_[chosen_].paths : 0;
+  chosen_ = continues ? continue_plan(task, stats) : choose_among_all(task, paths, stats);
   const StageTimer timer;
   Candidate& chosen = candidates_[chosen_];
   fine_.set_target(task.target, task.maximum, chosen.fit.sigma());
   chosen.fit.choose_felt(fine_, stats);
   chosen.fit.append(task, plan, stats);
   count_.take(chosen.paths);
+  rough_.set_target(task.target, task.maximum, chosen.fit.sigma());
+  cost_ = cost(chosen);
+  least_cost_ = continues ? std::min(least_cost_, cost_) : cost_;
   stats.refine += timer.seconds();
 }
 

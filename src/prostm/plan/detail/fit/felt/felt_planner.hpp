@@ -14,7 +14,8 @@
 namespace prostm::planning {
 
 /// Makes several plans, with every number of paths, and keeps the plan with the least cost (P25) of
-/// its percept. In a sequence, continues the last plan, and compares it with others by turns.
+/// its percept. In a sequence, continues the last plan, and compares it with others by turns, or
+/// with all when it has become worse.
 class FeltPlanner : public PatchPlanner {
  public:
   /// @param tables shared by the planners of all patches.
@@ -35,7 +36,7 @@ class FeltPlanner : public PatchPlanner {
 
   float plan_roughly(const PatchTask& task, Candidate& candidate, PlanStats& stats);
   float cost(Candidate& candidate);
-  std::size_t choose_among_all(const PatchTask& task, PlanStats& stats);
+  std::size_t choose_among_all(const PatchTask& task, int paths, PlanStats& stats);
   std::size_t continue_plan(const PatchTask& task, PlanStats& stats);
   void move_points(const PatchTask& task, FitPlanner& fit, PlanStats& stats);
 
@@ -45,6 +46,7 @@ class FeltPlanner : public PatchPlanner {
   RegionCounter regions_;
   PathCount count_;
   std::size_t chosen_ = kNone, rival_ = 0;  // candidate of the last plan, and the last compared
+  float cost_ = 0.0F, least_cost_ = 0.0F;   // of the last plan, and since all were compared
   int plans_ = 0;                           // since reset()
   Vec2 origin_ = Vec2::Zero();              // of the last target [m]
   Loops loops_;

@@ -126,7 +126,8 @@ void FeltStep::keep(Kept::From from, const FeltProblem::Loudness& wanted) {
 /// Lowers the cost as a function of √p, from the kept points, or from the fit if that costs less
 /// than the start from the previous plan. @return evaluations used.
 int FeltStep::descend(const QuasiNewton::Cost& cost, float fit_cost) {
-  const FeltEffort* effort = kept_.from == Kept::From::MovedPoints ? &tuning_.from_moved
+  const FeltEffort& moved = kept_.moved_on ? tuning_.from_moved_on : tuning_.from_moved;
+  const FeltEffort* effort = kept_.from == Kept::From::MovedPoints ? &moved
                              : kept_.from == Kept::From::LastPlan  ? &tuning_.from_last_plan
                                                                    : &tuning_.from_fit;
   begin_at_kept();
@@ -221,7 +222,10 @@ int FeltStep::move_points(const LapStarts& starts, const CommonLoop& loop,
   take_fit(pressure);
   begin_at_kept();
   const bool again = kept_.from == Kept::From::MovedPoints;
-  if (!again) problem_.keep_loudness(fitted_);
+  if (!again) {
+    kept_.moved_on = kept_.from == Kept::From::LastPlan;
+    problem_.keep_loudness(fitted_);
+  }
   const FeltProblem::Loudness wanted = again ? kept_.wanted : problem_.loudness();
   loops_ = loops;
   pairs_.clear();
@@ -235,7 +239,9 @@ int FeltStep::move_points(const LapStarts& starts, const CommonLoop& loop,
   const auto cost = [&](std::span<const float> x, std::span<float> gradient) {
     return moved_cost(loop, shape, bounds, pieces, x, gradient);
   };
-  const FeltEffort& effort = again ? tuning_.moving_again : tuning_.moving;
+  const FeltEffort& effort = again            ? tuning_.moving_again
+                             : kept_.moved_on ? tuning_.moving_on
+                                              : tuning_.moving;
   descent_.begin(std::ref(cost), variables_);
   const int evaluations =
       descent_.run(std::ref(cost), effort.first_step, effort.evaluations, variables_);

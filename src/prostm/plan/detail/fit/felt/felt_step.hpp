@@ -30,11 +30,11 @@ struct FeltTuning {
   float near = 2.0F;         ///< distance within which a point continues one of the last plan [mm]
   float moved_near = 6.0F;   ///< same distance for moved points [mm]
   // descents of pressures: from the fit, from the fit because the last plan cost more, from the
-  // last plan, and after points were moved
+  // last plan, after points were moved, and after those of the last plan were moved on
   FeltEffort from_fit = {12, 0.5F}, from_fit_again = {6, 0.5F}, from_last_plan = {6, 0.3F},
-             from_moved = {30, 0.5F};
-  /// Descents that move points: the first, and those after mending.
-  FeltEffort moving = {50, 0.5F}, moving_again = {25, 0.5F};
+             from_moved = {30, 0.5F}, from_moved_on = {30, 0.5F};
+  /// Descents that move points: the first, those after mending, and the first from the last plan.
+  FeltEffort moving = {50, 0.5F}, moving_again = {25, 0.5F}, moving_on = {50, 0.5F};
 };
 
 /// How loud the result of a felt step is: like the initial pressures if the array can render that,
@@ -82,6 +82,7 @@ class FeltStep {
   struct Kept {
     enum class From { Nothing, LastPlan, MovedPoints } from = From::Nothing;
     std::vector<Chosen> points;
+    bool moved_on = false;         ///< for moved points: whether they began at the last plan
     FeltProblem::Loudness wanted;  ///< for moved points: loudness of the fit before they moved
   };
 
