@@ -63,7 +63,8 @@ int main(int argc, char** argv) {
   std::string figure, keep;
   int most = 0, threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   bool each = false, quick = false, live = false;
-  program.option("--set", sets, "sets of fields: tuning, gallery, scout, plumes, new, drawn");
+  program.option("--set", sets,
+                 "sets of fields: tuning, gallery, scout, plumes, new, drawn, redrawn, shapes");
   program.option("--ways", only_ways, "only these ways; the others are compared with the first");
   program.option("--skins", only_skins, "only these skins; the first has all readouts");
   program.option("--disturbances", only_disturbances, "only these disturbances");

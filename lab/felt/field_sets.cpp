@@ -2,6 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <utility>
+
 #include "prostm/core/input_error.hpp"
 #include "prostm/fields/felt_fields.hpp"
 #include "prostm/fields/fields.hpp"
@@ -10,7 +16,8 @@
 namespace prostm::bench {
 namespace {
 
-constexpr std::uint64_t kTuningSeed = 1, kScoutSeed = 101, kNewSeed = 201, kDrawnSeed = 401;
+constexpr std::uint64_t kTuningSeed = 1, kScoutSeed = 101, kNewSeed = 201, kDrawnSeed = 401,
+                        kRedrawnSeed = 501;
 
 std::vector<NamedField> gallery() {
   constexpr int kCells = 54;  // per edge of the raster; each of 3 mm
@@ -62,6 +69,39 @@ std::vector<NamedField> plumes() {
   return out;
 }
 
+/// Distance from the segment between two points.
+double distance(const Vec2& x, const Vec2& from, const Vec2& to) {
+  const Vec2 along = to - from;
+  const double square = along.squaredNorm();
+  const double share = square > 0.0 ? std::clamp((x - from).dot(along) / square, 0.0, 1.0) : 0.0;
+  return (x - from - share * along).norm();
+}
+
+/// Returns plain shapes of 6 mm (σ) on the palm of the hand.
+std::vector<NamedField> shapes() {
+  constexpr double kWidth = 6e-3, kRadius = 22e-3, kHalf = 22e-3;
+  const Vec2 palm(0.0, -0.040), across(kHalf, 0.0), up(0.0, kHalf);
+  const std::array<std::pair<const char*, std::function<double(const Vec2&)>>, 4> kShapes{{
+      {"ring", [](const Vec2& x) { return x.norm() - kRadius; }},
+      {"line", [&](const Vec2& x) { return distance(x, -across, across); }},
+      {"point", [](const Vec2& x) { return x.norm(); }},
+      {"letter T",
+       [&](const Vec2& x) {
+         return std::min(distance(x, up - across, up + across), distance(x, -up, up));
+       }},
+  }};
+  std::vector<NamedField> out;
+  for (const auto& [name, far] : kShapes) {
+    TargetField field = fields::felt_field(fields::FeltKind::Plume, 1, fields::Outline::Hand);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      const double z = far(field.position(i) - palm) / kWidth;
+      field.pressure[i] = field.skin[i] != 0 ? std::exp(-0.5 * z * z) : 0.0;
+    }
+    out.push_back({name, field});
+  }
+  return out;
+}
+
 std::vector<NamedField> whole_set(SetName set) {
   switch (set) {
     case SetName::Tuning:
@@ -74,6 +114,10 @@ std::vector<NamedField> whole_set(SetName set) {
       return plumes();
     case SetName::Drawn:
       return generated(fields::kDrawnKinds, kDrawnSeed, 24);
+    case SetName::Redrawn:
+      return generated(fields::kDrawnKinds, kRedrawnSeed, 24);
+    case SetName::Shapes:
+      return shapes();
     case SetName::New:
       break;
   }

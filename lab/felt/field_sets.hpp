@@ -14,15 +14,16 @@ namespace prostm::bench {
 /// Tuning: the twelve kinds of fields::kFeltKinds, only for choosing settings, not for judging.
 /// Gallery: three frames of each generated sequence. Scout: the twelve kinds with other seeds.
 /// Plumes: four moments of the scene four-plumes on the study's hand. New: eight kinds that are in
-/// no other set, three seeds each. Drawn: 24 fields of random parts, for judging the preset `felt`.
-enum class SetName : std::uint8_t { Tuning, Gallery, Scout, Plumes, New, Drawn };
+/// no other set, three seeds each. Drawn, Redrawn: 24 fields of random parts, the latter for the
+/// final judgement alone. Shapes: a ring of 22 mm, a line, a point and a letter.
+enum class SetName : std::uint8_t { Tuning, Gallery, Scout, Plumes, New, Drawn, Redrawn, Shapes };
 
 }  // namespace prostm::bench
 
 namespace prostm {
 template <>
-inline constexpr std::array<std::string_view, 6> kNames<bench::SetName> = {
-    "tuning", "gallery", "scout", "plumes", "new", "drawn"};
+inline constexpr std::array<std::string_view, 8> kNames<bench::SetName> = {
+    "tuning", "gallery", "scout", "plumes", "new", "drawn", "redrawn", "shapes"};
 }  // namespace prostm
 
 namespace prostm::bench {
