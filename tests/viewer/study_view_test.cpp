@@ -117,9 +117,12 @@ class LiveStudy {
   std::thread thread_;
 };
 
-/// The next state of a page with the session in a phase.
-Json at_phase(Page& page, const std::string& phase) {
+/// The next state of a page with the session in a phase. @param meanwhile is called before each
+/// message: a phase may wait for a recent report of the participant's page.
+Json at_phase(
+    Page& page, const std::string& phase, const std::function<void()>& meanwhile = [] {}) {
   for (;;) {
+    meanwhile();
     Json state = page.next_text("study");
     if (state.at("phase") == phase) return state;
   }
@@ -147,7 +150,7 @@ TEST(StudyView, TakesARunThroughTheTrialsAndHidesThemFromBothPages) {
     participant.say(kReport);
     if (i == 0 || order[i].method != order[i - 1].method)
       experimenter.say(R"({"type":"study","do":"next"})");
-    const Json told = at_phase(experimenter, "presenting"),
+    const Json told = at_phase(experimenter, "presenting", [&] { participant.say(kReport); }),
                shown = at_phase(participant, "presenting");
     EXPECT_TRUE(told.at("condition").is_null());
     EXPECT_EQ(told.at("question"), shown.at("question").at("text"));
@@ -198,14 +201,12 @@ TEST(StudyView, HoldsTrialsUntilThePageReportsTheNoise) {
   state_with(experimenter, needs("does not report"));
   participant->say(kReport);
   state_with(experimenter, needs("noise does not play"));
-  participant->say(kWithNoise);
-  at_phase(experimenter, "presenting");
+  at_phase(experimenter, "presenting", [&] { participant->say(kWithNoise); });
   participant.reset();  // as in a reload
   at_phase(experimenter, "settling");
   state_with(experimenter, needs("not open"));
   Page again(study.port(), "", "", "/guest/live");
-  again.say(kWithNoise);
-  at_phase(experimenter, "presenting");
+  at_phase(experimenter, "presenting", [&] { again.say(kWithNoise); });
   experimenter.say(R"({"type":"study","do":"answer","yes":true})");
   at_phase(experimenter, "settling");
   EXPECT_EQ(study.trials().at(0)["page"]["interrupted"], 1);
