@@ -127,7 +127,7 @@ std::optional<Judged> Kept::find(const std::string& key) const {
 
 void Kept::add(const std::string& key, const Judged& judged) {
   Judged one = judged;
-  one.percept.clear();
+  if (!path_.empty()) one.percept.clear();
   const std::unique_lock lock(mutex_);
   all_.insert_or_assign(key, std::move(one));
 }

@@ -14,7 +14,7 @@ namespace prostm::bench {
 
 /// Judgements by a key of the plan, the target and everything else that determines the scores,
 /// except the program itself: remove the file when emission, acoustics or skin change. The map
-/// Judged::percept is not stored. Thread-safe.
+/// Judged::percept is kept only without a file. Thread-safe.
 class Kept {
  public:
   /// @param path of the file, which need not exist; empty: nothing is stored. @throws InputError
