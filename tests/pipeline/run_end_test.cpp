@@ -148,7 +148,8 @@ TEST_P(RunEnds, WhenTheHandsThrow) {
   Ender observer(Ender::By::Nothing);
   const RunSummary summary = run(pipeline, settings_, {kTooLong, GetParam()}, observer);
   EXPECT_EQ(what(summary), "the hand failed");
-  EXPECT_GE(summary.world_steps, 1);
+  // in real time a late world skips its steps
+  if (GetParam() != RunMode::RealTime) EXPECT_GE(summary.world_steps, 1);
   EXPECT_EQ(pipeline.device().status(), DeviceStatus::Idle);
 }
 
