@@ -46,8 +46,12 @@ std::vector<Knob> knobs() {
           {"moving, first step", true, first_step(&FeltTuning::moving)},
           {"moving_again, evaluations", true, evaluations(&FeltTuning::moving_again)},
           {"moving_again, first step", true, first_step(&FeltTuning::moving_again)},
+          {"moving_on, evaluations", true, evaluations(&FeltTuning::moving_on)},
+          {"moving_on, first step", true, first_step(&FeltTuning::moving_on)},
           {"from_moved, evaluations", true, evaluations(&FeltTuning::from_moved)},
-          {"from_moved, first step", true, first_step(&FeltTuning::from_moved)}};
+          {"from_moved, first step", true, first_step(&FeltTuning::from_moved)},
+          {"from_moved_on, evaluations", true, evaluations(&FeltTuning::from_moved_on)},
+          {"from_moved_on, first step", true, first_step(&FeltTuning::from_moved_on)}};
 }
 
 TargetField field_of(int number) {
