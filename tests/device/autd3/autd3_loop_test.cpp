@@ -43,7 +43,7 @@ TEST(Autd3Loops, AreRepeatedAndReplaced) {
   ASSERT_EQ(array.load_segment(circle(length, 4, 0.019), 4), DeviceStatus::Running);
   // same length, and close by: the switch happens at the same sample, without silence
   double radius = 0.019;
-  EXPECT_EQ(test::best_of(5, 0.5,
+  EXPECT_EQ(test::best_of(20, 0.5,
                           [&] {
                             radius += 0.02e-3;
                             return silences_of(circle(length, 4, radius));
@@ -86,7 +86,7 @@ TEST(Autd3Loops, MayBeAsLongAsTheUnitsStore) {
   ASSERT_EQ(array.load_segment(circle(8192, 4, 0.019), 4), DeviceStatus::Running);
   ASSERT_GT(server.wait_until_it(true), 0.0);
   // the current loop keeps playing while the next one is written
-  EXPECT_EQ(test::best_of(4, 0.5,
+  EXPECT_EQ(test::best_of(20, 0.5,
                           [&] {
                             const int before = server.report()["silences"];
                             EXPECT_EQ(array.load_segment(circle(8192, 4, 0.01901), 4),
