@@ -84,9 +84,11 @@ describe("a page with a hand", () => {
   });
 
   it("shows the pressure under the pointer, in the planes and on the skin", async () => {
-    const box = (await page.locator('canvas[data-kind="rendered"]').boundingBox())!;
-    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-    await says("hover", "Pa");
+    await expect.poll(async () => { // the layout may change while the page starts
+      const box = (await page.locator('canvas[data-kind="rendered"]').boundingBox())!;
+      await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+      return text("hover");
+    }, { timeout: 30_000 }).toContain("Pa");
     expect(await text("hover")).toMatch(/^target \d+(\.\d+)? Pa\nreconstruction \d+(\.\d+)? Pa\ndifference [−+]\d+(\.\d+)? Pa\nx −?\d+, y −?\d+ mm, [12]\d\d mm over the array$/);
     // seen from below, the palm is in the middle
     await page.locator('[data-view="below"]').click();
