@@ -353,16 +353,9 @@ void FitPlanner::append(const PatchTask& task, Plan& plan, PlanStats& stats) {
   stats.leaves += paths;
 }
 
-void FitPlanner::start_from(const Loops& loops, const TargetField& target) {
-  reset();
-  phases_.forget();
-  fit_.loops = loops;
-  origin_ = target.origin;
-  has_previous_ = follows_ = true;
-}
-
-void FitPlanner::find(const PatchTask& task, PlanStats& stats) {
-  StageTimer timer;
+/// Sets the target, and transforms the paths of the last plan to its coordinates.
+void FitPlanner::set_target(const PatchTask& task, PlanStats& stats) {
+  const StageTimer timer;
   const TargetField& target = task.target;
   full_scale_ = task.full_scale;
   is_alone_ = task.is_alone;
@@ -374,24 +367,41 @@ void FitPlanner::find(const PatchTask& task, PlanStats& stats) {
     search_.set_sigma(kMmPerMetre * settings_.sigma);
   }
   search_.set_target(target, task.maximum, task.budget);
-  stats.init += timer.lap();
-
   move_to(target.origin);
+  stats.init += timer.seconds();
+}
+
+/// Makes the paths of the search valid. @param timer since the search began.
+void FitPlanner::finish(const PatchTask& task, const StageTimer& timer, PlanStats& stats) {
+  stats.cost_evaluations += search_.finish(shape_of(task.target).most_length, fit_);
+  ending_.restart();
+  mend(task.target, stats);
+  choose_starts();
+  has_previous_ = true;
+  stats.refine += timer.seconds();
+}
+
+void FitPlanner::find(const PatchTask& task, PlanStats& stats) {
+  set_target(task, stats);
+  const StageTimer timer;
   const bool continues = has_previous_ && fit_.loops.paths <= task.paths;
   if (!continues) {
     phases_.forget();
     if (felt_) felt_->forget();
     last_period_ = 0.0;
   }
-  stats.cost_evaluations +=
-      follows_ ? search_.follow(fit_) : search_.run(task.paths, continues, fit_);
-  follows_ = false;
-  stats.cost_evaluations += search_.finish(shape_of(target).most_length, fit_);
-  ending_.restart();
-  mend(target, stats);
-  choose_starts();
-  has_previous_ = true;
-  stats.refine += timer.lap();
+  stats.cost_evaluations += search_.run(task.paths, continues, fit_);
+  finish(task, timer, stats);
+}
+
+void FitPlanner::find_from(const Loops& loops, const PatchTask& task, PlanStats& stats) {
+  reset();
+  phases_.forget();
+  set_target(task, stats);
+  fit_.loops = loops;
+  const StageTimer timer;
+  stats.cost_evaluations += search_.follow(fit_);
+  finish(task, timer, stats);
 }
 
 void FitPlanner::plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats) {

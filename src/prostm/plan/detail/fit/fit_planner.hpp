@@ -30,11 +30,10 @@ class FitPlanner : public PatchPlanner {
   void plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats) override;
 
   // The parts of plan_patch(), for planners that change the paths found before they append them.
-  /// Makes the next plan one of these paths, fitted to its target. @param target whose origin their
-  /// coordinates are relative to.
-  void start_from(const Loops& loops, const TargetField& target);
   /// Finds valid paths with playable pressures.
   void find(const PatchTask& task, PlanStats& stats);
+  /// Same, by fitting these paths alone. @param loops relative to the target's origin.
+  void find_from(const Loops& loops, const PatchTask& task, PlanStats& stats);
   /// Moves the points of paths in step by their percept, and mends the paths. @param step has the
   /// task's target. @param rounds number of repetitions.
   void move_felt(const PatchTask& task, FeltStep& step, int rounds, PlanStats& stats);
@@ -49,6 +48,8 @@ class FitPlanner : public PatchPlanner {
   double sigma() const { return settings_.sigma; }  ///< σ of the last target [m]
 
  private:
+  void set_target(const PatchTask& task, PlanStats& stats);
+  void finish(const PatchTask& task, const StageTimer& timer, PlanStats& stats);
   void move_to(const Vec2& origin);
   boost::container::static_vector<int, kMaxPaths> by_pressure() const;
   PlayBounds play_bounds(double gain, double speed) const;
@@ -84,7 +85,6 @@ class FitPlanner : public PatchPlanner {
   Fit fit_;                         // the last plan; start of the next
   Vec2 origin_ = Vec2::Zero();      // origin of the target that fit_ is for [m]
   bool has_previous_ = false, is_flat_ = false, is_alone_ = true;
-  bool follows_ = false;      // whether the next plan is one of the paths given
   double last_period_ = 0.0;  // period of the last plan's loop [s]
   double rendered_ = 0.0;     // effective pressure that is 1 in fit_
   double full_scale_ = 0.0;   // rendered pressure at full output

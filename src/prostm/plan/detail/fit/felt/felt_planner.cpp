@@ -99,13 +99,13 @@ float FeltPlanner::cost(Candidate& candidate) {
 float FeltPlanner::plan_roughly(const PatchTask& task, Candidate& candidate, PlanStats& stats) {
   if (candidate.start == Start::Stops) {
     candidate.fit.reset();
+    candidate.fit.find(with_paths(task, candidate.paths), stats);
   } else {
     loops_.samples = settings_.moved_samples();
     const auto set = candidate.start == Start::Circle ? start_circle : start_line;
     set(task.target, loop_bounds(settings_, task.target), loops_);
-    candidate.fit.start_from(loops_, task.target);
+    candidate.fit.find_from(loops_, task, stats);
   }
-  candidate.fit.find(with_paths(task, candidate.paths), stats);
   const StageTimer timer;
   rough_.set_target(task.target, task.maximum, candidate.fit.sigma());
   rough_.forget();
