@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "prostm/core/input_error.hpp"
+#include "prostm/core/segment_distance.hpp"
 #include "prostm/fields/felt_fields.hpp"
 #include "prostm/fields/fields.hpp"
 #include "prostm/pipeline/pipeline.hpp"
@@ -69,25 +70,18 @@ std::vector<NamedField> plumes() {
   return out;
 }
 
-/// Distance from the segment between two points.
-double distance(const Vec2& x, const Vec2& from, const Vec2& to) {
-  const Vec2 along = to - from;
-  const double square = along.squaredNorm();
-  const double share = square > 0.0 ? std::clamp((x - from).dot(along) / square, 0.0, 1.0) : 0.0;
-  return (x - from - share * along).norm();
-}
-
 /// Returns plain shapes of 6 mm (σ) on the palm of the hand.
 std::vector<NamedField> shapes() {
   constexpr double kWidth = 6e-3, kRadius = 22e-3, kHalf = 22e-3;
   const Vec2 palm(0.0, -0.040), across(kHalf, 0.0), up(0.0, kHalf);
   const std::array<std::pair<const char*, std::function<double(const Vec2&)>>, 4> kShapes{{
       {"ring", [](const Vec2& x) { return x.norm() - kRadius; }},
-      {"line", [&](const Vec2& x) { return distance(x, -across, across); }},
+      {"line", [&](const Vec2& x) { return std::sqrt(segment_distance2(x, -across, across)); }},
       {"point", [](const Vec2& x) { return x.norm(); }},
       {"letter T",
        [&](const Vec2& x) {
-         return std::min(distance(x, up - across, up + across), distance(x, -up, up));
+         return std::sqrt(std::min(segment_distance2(x, up - across, up + across),
+                                   segment_distance2(x, -up, up)));
        }},
   }};
   std::vector<NamedField> out;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "prostm/core/random.hpp"
+#include "prostm/core/segment_distance.hpp"
 #include "prostm/core/units.hpp"
 
 namespace prostm::fields {
@@ -26,12 +27,6 @@ double gaussian(double distance2, double sigma) {
 double step(double x) {
   constexpr double kWidth = 2.5e-3;  // [m]
   return 1.0 / (1.0 + std::exp(x / kWidth));
-}
-
-double segment_distance2(const Vec2& x, const Vec2& a, const Vec2& b) {
-  const Vec2 ab = b - a;
-  const double t = std::clamp((x - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
-  return (x - a - t * ab).squaredNorm();
 }
 
 /// Returns a ridge along open lines of points [m].

@@ -4,17 +4,11 @@
 #include <cmath>
 #include <functional>
 
+#include "prostm/core/segment_distance.hpp"
 #include "prostm/core/units.hpp"
 
 namespace prostm::fields {
 namespace {
-
-/// Returns the squared distance of x from the segment (a, b).
-double segment_distance2(const Vec2& x, const Vec2& a, const Vec2& b) {
-  const Vec2 ab = b - a;
-  const double t = std::clamp((x - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
-  return (x - a - t * ab).squaredNorm();
-}
 
 Vec2 unit(double angle) {
   return {std::cos(angle), std::sin(angle)};

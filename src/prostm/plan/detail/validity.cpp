@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "prostm/core/segment_distance.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/plan/plan.hpp"
 
@@ -19,13 +20,6 @@ using ConstLoop = std::span<const Vec2>;
 
 void scale_about(Loop loop, const Vec2& centre, double factor) {
   for (Vec2& x : loop) x = centre + factor * (x - centre);
-}
-
-double point_segment_distance2(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const Vec2 ab = b - a;
-  const double squared = ab.squaredNorm();
-  const double t = squared > 0.0 ? std::clamp((p - a).dot(ab) / squared, 0.0, 1.0) : 0.0;
-  return (p - a - t * ab).squaredNorm();
 }
 
 struct Box {
@@ -142,8 +136,8 @@ bool segments_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) 
     return true;
   }
   // otherwise the shortest distance is at an end
-  return std::min({point_segment_distance2(a, c, d), point_segment_distance2(b, c, d),
-                   point_segment_distance2(c, a, b), point_segment_distance2(d, a, b)}) <
+  return std::min({segment_distance2(a, c, d), segment_distance2(b, c, d),
+                   segment_distance2(c, a, b), segment_distance2(d, a, b)}) <
          kClearance * kClearance;
 }
 
@@ -201,8 +195,8 @@ bool folds_back(std::span<const Vec2> loop) {
   const std::size_t n = loop.size();
   for (std::size_t i = 0, last = n - 1; i < n; last = i++) {
     const Vec2 &before = loop[last], &x = loop[i], &after = loop[i + 1 < n ? i + 1 : 0];
-    if (std::min(point_segment_distance2(after, before, x),
-                 point_segment_distance2(before, x, after)) < kClearance * kClearance) {
+    if (std::min(segment_distance2(after, before, x), segment_distance2(before, x, after)) <
+        kClearance * kClearance) {
       return true;
     }
   }
