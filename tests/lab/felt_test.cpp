@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "felt/chosen_paths.hpp"
+#include "felt/field_sets.hpp"
 #include "felt/judge.hpp"
 #include "felt/kept.hpp"
 #include "felt/tables.hpp"
@@ -173,6 +174,33 @@ TEST(FeltJudge, CachesItsResults) {
   EXPECT_EQ(again.disturbed, first.disturbed);
   write_file(path, "[1]");
   EXPECT_THAT(test::input_error([&] { Kept wrong(path); }), testing::HasSubstr(path));
+}
+
+TEST(FeltJudge, WaysWithTheSamePlanHaveTheSameMap) {
+  const Way circles{"circles", [](const TargetField&) -> Planning {
+                      return [](const TargetField&) { return two_circles(); };
+                    }};
+  Kept kept("");
+  const auto judged =
+      judge_all(usx_array(), {{"pair", target()}}, {circles, circles}, {nominal()}, {}, 1, kept);
+  EXPECT_EQ(judged[0][0].percept.size(), target().size());
+  EXPECT_EQ(judged[1][0].percept, judged[0][0].percept);
+}
+
+TEST(FieldSets, AreValidAndShareNoField) {
+  std::vector<std::vector<double>> all;
+  for (const SetName set : {SetName::Tuning, SetName::Scout, SetName::New, SetName::Drawn,
+                            SetName::Redrawn, SetName::Shapes}) {
+    const std::vector<NamedField> fields = field_set(set);
+    EXPECT_EQ(fields.size(), set == SetName::Shapes ? 4U : 24U);
+    for (const NamedField& named : fields) {
+      EXPECT_NO_THROW(validate(named.field)) << named.name;
+      EXPECT_GT(max_pressure(named.field), 0.9) << named.name;
+      all.push_back(named.field.pressure);
+    }
+  }
+  std::sort(all.begin(), all.end());
+  EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());
 }
 
 TEST(FeltJudge, ShapeAndStrengthDecideTheNumberOfPaths) {
