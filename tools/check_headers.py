@@ -44,6 +44,8 @@ def main():
     root = Path(sys.argv[1]).resolve()
     out = root / "build/headers"
     out.mkdir(parents=True, exist_ok=True)
+    # A precompiled header names its folder. Without a base directory, ccache does not restore one of another checkout.
+    os.environ.pop("CCACHE_BASEDIR", None)
     compiler = [*(["ccache"] if shutil.which("ccache") else []), "clang++", *flags(root)]
     checkout = Checkout(root)
 
@@ -67,7 +69,7 @@ def main():
     groups = {header: group_of(header) for header in sorted((root / "src/prostm").rglob("*.hpp"))
               if not header.match(PARTS)}
     needed = set(groups.values()) - {None}
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         options = {None: [], **dict(zip(needed, pool.map(precompile, needed)))}
         count = sum(pool.map(refused, groups))
     print(f"headers: clang accepts {len(groups) - count} of {len(groups)} on their own")
