@@ -187,6 +187,7 @@ TEST(SimulatedArray, VanishesAndReturns) {
     ASSERT_TRUE(eventually([&] { return array.stats().blocks >= 30; }));
     EXPECT_GE(array.stats().blocks, 30);
     EXPECT_EQ(array.status(), DeviceStatus::Running);
+    array.stop();
   }
 }
 
