@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "prostm/fields/fields.hpp"
@@ -47,6 +48,43 @@ TEST(Rendering, FlatHasNoSkillButBestHas) {
   EXPECT_GT(best.mean_power, 1.0);
   EXPECT_LE(best.mean_power, 256.0);
   EXPECT_GT(best.field.largest, best.field.largest_mean);
+}
+
+TEST(Rendering, FeltIsTruerAndStrongerThanBestInThePercept) {
+  const TargetField field = target();
+  Renderer renderer(usx_array(), field);
+  const Rendering best = renderer.render(Way::BestNarrow, field),
+                  felt = renderer.render(Way::Felt, field);
+  EXPECT_GT(felt.of_felt.skill_8, best.of_felt.skill_8);
+  EXPECT_GT(felt.felt.largest, best.felt.largest);
+  EXPECT_LE(felt.mean_power, 256.0);
+}
+
+TEST(Rendering, OneCircleHasTheMeanDistanceOfARing) {
+  const TargetField ring = fields::make(fields::Pattern::Ring, 50, kCells);
+  Renderer renderer(usx_array(), ring);
+  const Rendering circle = renderer.render(Way::Circle, ring);
+  ASSERT_EQ(circle.plan.paths.size(), 1U);
+  EXPECT_GT(circle.of_felt.skill_8, renderer.render(Way::RandomCircles, ring).of_felt.skill_8);
+  EXPECT_GT(circle.of_felt.skill_8, renderer.render(Way::Circles, ring).of_felt.skill_8);
+}
+
+TEST(Rendering, RandomCirclesDifferInEachCall) {
+  const TargetField field = target();
+  Renderer renderer(usx_array(), field);
+  const Plan one = renderer.render(Way::RandomCircles, field).plan,
+             two = renderer.render(Way::RandomCircles, field).plan;
+  EXPECT_NE(one.paths[0].points[0], two.paths[0].points[0]);
+}
+
+TEST(Rendering, FeltFociAreDelayed) {
+  const TargetField field = target();
+  Renderer renderer(usx_array(), field);
+  const Rendering usual = renderer.render(Way::Am, field),
+                  felt = renderer.render(Way::AmFelt, field);
+  EXPECT_LE(felt.plan.foci.size(), 6U);
+  EXPECT_TRUE(std::ranges::any_of(felt.plan.foci, [](const auto& f) { return f.phase > 0.0; }));
+  EXPECT_TRUE(std::ranges::all_of(usual.plan.foci, [](const auto& f) { return f.phase == 0.0; }));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -211,6 +212,39 @@ TEST(Controls, AreFiniteForOneCellAndForEveryPattern) {
   cell.pressure[0] = 1e-290;
   expect_finite(cell);
   for (const fields::Pattern pattern : fields::kPatterns) expect_finite(fields::make(pattern, 0));
+}
+
+TEST(Controls, OfRandomCirclesAreTheMedianOfTheirDraws) {
+  const TargetField target = fields::make(fields::Pattern::FourPlumes, 50);
+  Random random(3);
+  std::vector<double> skills;
+  for (int draw = 0; draw < 20; ++draw) {
+    const Plan plan = random_circles(target, kSigma, kGain, 0.14, random);
+    skills.push_back(score_plan(target, plan, 0, kSigma, kGain).skill_0);
+    EXPECT_LE(plan.paths.size(), 4U);
+  }
+  std::ranges::sort(skills);
+  const std::vector<Control> table = controls(target, kSigma, kGain, 0.14, nullptr, 3);
+  EXPECT_NEAR(table.back().metrics.skill_0, 0.5 * (skills[9] + skills[10]), 0.02);
+}
+
+TEST(Controls, OneCircleLiesAboutTheCentreOfMass) {
+  const TargetField target = fields::make(fields::Pattern::Ring, 50);
+  const Plan plan = circles_at_mass_centres(target, kGain, 0.1, 1, 1);
+  ASSERT_EQ(plan.paths.size(), 1U);
+  EXPECT_NEAR(plan.paths[0].length, 0.1, 1e-9);
+  Vec2 centre = Vec2::Zero(), mean = Vec2::Zero();
+  double mass = 0.0;
+  for (int row = 0; row < target.rows; ++row) {
+    for (int col = 0; col < target.cols; ++col) {
+      const double p = target.pressure[target.index(row, col)];
+      centre += p * target.position(row, col);
+      mass += p;
+    }
+  }
+  for (const Vec2& point : plan.paths[0].points)
+    mean += point / static_cast<double>(plan.paths[0].points.size());
+  EXPECT_LT((mean - centre / mass).norm(), 1e-3);  // the weakest hundredth is left out
 }
 
 TEST(Controls, ReportTheProgressAfterEachField) {

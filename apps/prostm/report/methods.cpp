@@ -32,6 +32,7 @@ Json shape_rows(const AllMeans& means) {
   for (std::size_t w = 0; w < kWays.size(); ++w) {
     const Means& m = means[w];
     const bool model = kWays[w] != Way::Flat;  // which makes no paths
+    const Distribution& strength = m.level[static_cast<std::size_t>(methods::Equal::Drive)].percept;
     const auto of_model = [&](const Distribution& d) { return model ? mean(d) : Json(nullptr); };
     rows.push_back({{"way", to_string(kWays[w])},
                     {"rmse", of_model(m.rmse)},
@@ -42,7 +43,9 @@ Json shape_rows(const AllMeans& means) {
                     {"felt_skill_8", mean(m.felt_skill_8)},
                     {"felt_correlation", mean(m.felt_correlation)},
                     {"felt_overlap", mean(m.felt_overlap)},
-                    {"ghosts", mean(m.ghosts)}});
+                    {"ghosts", mean(m.ghosts)},
+                    {"percept", mean(strength)},
+                    {"sensation", strength.count() > 0 ? sensation(strength) : Json(nullptr)}});
   }
   return rows;
 }
@@ -66,7 +69,8 @@ Json level_rows(const AllMeans& means, methods::Equal equal) {
 void add_tables(const AllMeans& means, Json& blocks) {
   blocks.push_back(report::table_block(
       "Shapes, after the gain of least squares: by Eq. (1); of the envelope, the highest pressure "
-      "that the array puts on each cell; and of what the skin feels",
+      "that the array puts on each cell; and of what the skin feels, with the strength of the "
+      "strongest place when the largest drive is equal",
       {{"way", "way"},
        {"rmse", "Eq. (1): RMSE"},
        {"correlation", "correlation"},
@@ -76,7 +80,9 @@ void add_tables(const AllMeans& means, Json& blocks) {
        {"felt_skill_8", "skin: skill_8"},
        {"felt_correlation", "correlation"},
        {"felt_overlap", "overlap"},
-       {"ghosts", "ghosts", "", 2}},
+       {"ghosts", "ghosts", "", 2},
+       {"percept", "strongest percept", "µm", 3},
+       {"sensation", "above threshold", "dB", 1}},
       shape_rows(means)));
   struct Equality {
     methods::Equal equal;

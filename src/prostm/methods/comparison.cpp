@@ -95,12 +95,14 @@ Targets recorded_targets(const std::string& path, int frames) {
 
 void draw_ways(const std::string& path) {
   constexpr std::array kDrawn = {fields::Pattern::OnePlume, fields::Pattern::FourPlumes};
+  constexpr std::array kShown = {Way::PaperValid, Way::BestNarrow, Way::Felt,
+                                 Way::Am,         Way::AmFelt,     Way::Circle};
   constexpr int kFrame = 50;
   Renderer renderer(usx_array(), fields::make(kDrawn[0], kFrame, kCells));
   MapFigure figure;
   figure.title = "Largest pressure of an array on the skin during the loop, and the percept";
   figure.scale = "relative to the largest";
-  figure.columns = static_cast<int>(kWays.size());
+  figure.columns = static_cast<int>(kShown.size()) + 1;  // with the target
   for (const fields::Pattern pattern : kDrawn) {
     const TargetField target = fields::make(pattern, kFrame, kCells);
     const auto map = [&](const std::string& title, const std::vector<double>& values,
@@ -113,11 +115,10 @@ void draw_ways(const std::string& path) {
     figure.maps.push_back({fields::to_string(pattern) + ", target", "", target.rows, target.cols,
                            target.cell, target.pressure});
     std::vector<FieldMap> felt = {figure.maps.back()};
-    for (const Way way : kWays) {
-      if (way == Way::Flat) continue;
+    for (const Way way : kShown) {
       const Rendering r = renderer.render(way, target);
       figure.maps.push_back(map(to_string(way) + ", pressure", r.field.envelope, r.of_envelope));
-      felt.push_back(map(to_string(way) + ", felt", r.felt.percept, r.of_felt));
+      felt.push_back(map(to_string(way) + ", percept", r.felt.percept, r.of_felt));
     }
     figure.maps.insert(figure.maps.end(), felt.begin(), felt.end());
   }

@@ -16,29 +16,82 @@ namespace {
 constexpr double kRate = 40e3;         // sample rate [Hz]
 constexpr double kModulation = 200.0;  // modulation frequency of the flat field [Hz]
 
-/// @param sigma width of the array's focus [m].
-Plan plan_by(Way way, const TargetField& target, double sigma) {
+/// Plans with a preset. @param sigma [m].
+Plan pro_stm(Preset preset, double sigma, const TargetField& target) {
   Plan plan;
   PlanStats stats;
   PlanSettings settings;
+  settings.preset = preset;
+  settings.sigma = sigma;
+  Planner(settings, target.size()).plan(target, plan, stats);
+  return plan;
+}
+
+Plan am(const AmSettings& settings, const TargetField& target) {
+  Plan plan;
+  PlanStats stats;
+  AmPlanner(settings, target.size()).plan(target, plan, stats);
+  return plan;
+}
+
+/// Settings that make AM's percept most like the target (docs/measurements/felt.md).
+AmSettings felt_am(double focus_width) {
+  AmSettings settings;
+  settings.foci = 6;
+  settings.sigma = 16e-3;
+  settings.felt_weight = 1.0;
+  settings.widths = {{0.2}, {0.0}, {0.0}, {focus_width}};
+  return settings;
+}
+
+/// Mean distance of the pressure from its centre of mass [m].
+double mean_distance(const TargetField& target) {
+  const auto mean = [&](const auto& value) {
+    double sum = 0.0, whole = 0.0;
+    for (int row = 0; row < target.rows; ++row) {
+      for (int col = 0; col < target.cols; ++col) {
+        const std::size_t i = target.index(row, col);
+        if (target.skin[i] == 0) continue;
+        sum += target.pressure[i] * value(target.position(row, col));
+        whole += target.pressure[i];
+      }
+    }
+    return sum / whole;
+  };
+  const double x = mean([](const Vec2&at) { return at.x(); }),
+               y = mean([](const Vec2&at) { return at.y(); });
+  return mean([&](const Vec2& at) { return (at - Vec2(x, y)).norm(); });
+}
+
+/// @param focus_width of the array [m].
+Plan plan_by(Way way, const TargetField& target, double focus_width, Random& random) {
+  const PlanSettings paper;
   switch (way) {
-    case Way::Am:
-      AmPlanner(AmSettings{}, target.size()).plan(target, plan, stats);
-      break;
-    case Way::Circles:
-      plan = circles_at_mass_centres(target, settings.gain_law(), settings.max_length(), 1);
-      break;
     case Way::PaperValid:
+      return pro_stm(Preset::PaperValid, paper.sigma, target);
     case Way::Best:
+      return pro_stm(Preset::Best, paper.sigma, target);
     case Way::BestNarrow:
-      settings.preset = way == Way::PaperValid ? Preset::PaperValid : Preset::Best;
-      if (way == Way::BestNarrow) settings.sigma = sigma;
-      Planner(settings, target.size()).plan(target, plan, stats);
-      break;
+      return pro_stm(Preset::Best, focus_width, target);
+    case Way::Felt:
+      return pro_stm(Preset::Felt, focus_width, target);
+    case Way::Am:
+      return am({}, target);
+    case Way::AmFelt:
+      return am(felt_am(focus_width), target);
+    case Way::Circle: {
+      const double length =
+          std::clamp(2.0 * kPi * mean_distance(target), paper.least_length, paper.max_length());
+      return circles_at_mass_centres(target, paper.gain_law(), length, 1, 1);
+    }
+    case Way::Circles:
+      return circles_at_mass_centres(target, paper.gain_law(), paper.max_length(), 4, 1);
+    case Way::RandomCircles:
+      return random_circles(target, paper.sigma, paper.gain_law(), paper.max_length(), random);
     case Way::Flat:
       break;
   }
-  return plan;
+  return {};
 }
 
 /// Returns the samples of a plan's loop, with full scale at the plan's largest pressure.
@@ -81,10 +134,18 @@ std::string to_string(Way way) {
       return "best";
     case Way::BestNarrow:
       return "best, its width";
+    case Way::Felt:
+      return "preset felt";
     case Way::Am:
       return "AM";
+    case Way::AmFelt:
+      return "AM, optimised";
+    case Way::Circle:
+      return "one circle";
     case Way::Circles:
       return "four circles";
+    case Way::RandomCircles:
+      return "random circles";
     case Way::Flat:
       return "flat";
   }
@@ -109,6 +170,7 @@ struct Renderer::Parts {
   WorkerPool pool;
   FeelingSkin skin;
   double sigma;  // width of a focus in the raster's middle [m]
+  Random random{1};
 };
 
 /// Computes the field of the array on the skin, and the skin's response.
@@ -131,7 +193,7 @@ Renderer::~Renderer() = default;
 
 Rendering Renderer::render(Way way, const TargetField& target) {
   Rendering out;
-  out.plan = plan_by(way, target, parts_->sigma);
+  out.plan = plan_by(way, target, parts_->sigma, parts_->random);
   if (way == Way::Flat) {
     constexpr int kParts = 25;
     out.field.envelope.assign(target.size(), 0.0);

@@ -13,12 +13,27 @@
 
 namespace prostm::methods {
 
-/// The compared ways. BestNarrow is Best planned with the width of the array's own focus; all
+/// The compared ways. BestNarrow is Best planned with the width of the array's own focus, like
+/// Felt. AmFelt optimises the percept of AM's foci, with the σ that suits it best. Circle is a
+/// single circle about the centre of mass; its radius is the pressure's mean distance from there.
+/// RandomCircles are placed without regard to the target, and get its least-squares pressures. All
 /// others use the paper's σ. Flat needs no array: the same pressure on all skin, modulated as in
 /// AM.
-enum class Way { PaperValid, Best, BestNarrow, Am, Circles, Flat };
-inline constexpr std::array kWays = {Way::PaperValid, Way::Best,    Way::BestNarrow,
-                                     Way::Am,         Way::Circles, Way::Flat};
+enum class Way {
+  PaperValid,
+  Best,
+  BestNarrow,
+  Felt,
+  Am,
+  AmFelt,
+  Circle,
+  Circles,
+  RandomCircles,
+  Flat
+};
+inline constexpr std::array kWays = {
+    Way::PaperValid, Way::Best,   Way::BestNarrow, Way::Felt,          Way::Am,
+    Way::AmFelt,     Way::Circle, Way::Circles,    Way::RandomCircles, Way::Flat};
 std::string to_string(Way way);
 
 /// One way on one target, with the largest drive at 1; for Flat, with a pressure of 1 Pa. Radiation

@@ -62,7 +62,7 @@ const Vec2& random_place(const std::vector<Vec2>& skin, Random& random) {
 }
 
 /// Makes up to four circles that do not cross, around random skin cells.
-Plan random_circles(const std::vector<Vec2>& skin, double length, double period, Random& random) {
+Plan circles_on(const std::vector<Vec2>& skin, double length, double period, Random& random) {
   std::vector<Vec2> centres;
   const double apart = 1.01 * length / kPi;
   for (int k = 0; k < kCircles; ++k) {
@@ -155,6 +155,22 @@ SegmentPressures own_pressures(const Plan& plan) {
   return out;
 }
 
+/// Random circles with their solved pressures, and the closest point of each cell.
+struct SolvedCircles {
+  Plan plan;
+  std::vector<ClosestPoint> nearest;
+};
+
+SolvedCircles solved_circles(const TargetField& target, const std::vector<Vec2>& skin,
+                             double maximum, double sigma, const GainLaw& gain, double length,
+                             Random& random, WorkerPool* pool) {
+  SolvedCircles out = {circles_on(skin, length, 1.0 / gain.draw_rate, random), {}};
+  out.nearest = closest_points(target, out.plan, 0, pool);
+  solve_pressures(normal_sums(target, maximum, sigma, gain, out.nearest, out.plan, pool), maximum,
+                  out.plan);
+  return out;
+}
+
 Vec2 centre_of_mass(const TargetField& target, double maximum) {
   Vec2 sum = Vec2::Zero();
   double mass = 0.0;
@@ -208,7 +224,7 @@ Plan random_foci(const TargetField& target, const std::vector<Vec2>& skin, std::
 }  // namespace
 
 Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, double length,
-                             std::uint64_t seed) {
+                             int count, std::uint64_t seed) {
   Plan plan;
   const double maximum = max_pressure(target);
   if (!(maximum > 0.0)) return plan;
@@ -221,12 +237,21 @@ Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, dou
     cells += 1.0;
   });
   planning::Clusters clusters;
-  kmeans.run(kCircles, 100, seed, clusters);
+  kmeans.run(count, 100, seed, clusters);
   const double period = 1.0 / gain.draw_rate;
   for (const Vec2& centre : clusters.centre) {
     plan.paths.push_back(circle(centre, length, period, gain.of(period) * sum / cells * maximum));
   }
   return plan;
+}
+
+Plan random_circles(const TargetField& target, double sigma, const GainLaw& gain, double length,
+                    Random& random) {
+  const double maximum = max_pressure(target);
+  if (!(maximum > 0.0)) return {};
+  return solved_circles(target, skin_of(target, maximum), maximum, sigma, gain, length, random,
+                        nullptr)
+      .plan;
 }
 
 namespace {
@@ -250,16 +275,15 @@ std::vector<Control> controls_by(WorkerPool* pool, const TargetField& target, do
   std::vector<Control> table;
   table.push_back({"flat field", flat_field(target, maximum, scorer)});
   ++done;
-  const Plan circles = circles_at_mass_centres(target, gain, length, seed);
+  const Plan circles = circles_at_mass_centres(target, gain, length, kCircles, seed);
   table.push_back({"four circles at the mass centres", score(circles)});
 
   const std::vector<Vec2> skin = skin_of(target, maximum);
   Random random(seed);
   std::vector<Metrics> draws;
   for (int draw = 0; draw < kDraws; ++draw) {
-    Plan plan = random_circles(skin, length, 1.0 / gain.draw_rate, random);
-    const std::vector<ClosestPoint> nearest = closest_points(target, plan, 0, pool);
-    solve_pressures(normal_sums(target, maximum, sigma, gain, nearest, plan, pool), maximum, plan);
+    const auto [plan, nearest] =
+        solved_circles(target, skin, maximum, sigma, gain, length, random, pool);
     const SegmentPressures solved = own_pressures(plan);
     draws.push_back(scored(scorer.plan(plan, 0, sigma, gain, nearest, &solved)));
   }

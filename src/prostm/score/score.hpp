@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "prostm/core/quantity.hpp"
+#include "prostm/core/random.hpp"
 #include "prostm/plan/gain.hpp"
 #include "prostm/plan/plan.hpp"
 #include "prostm/plan/quasi_static/quasi_static.hpp"
@@ -66,10 +67,14 @@ struct Control {
   Metrics metrics;
 };
 
-/// Returns the circles of the control "four circles at the mass centres" of controls(); an empty
-/// plan for a target without pressure.
+/// Returns `count` circles like those of the control "four circles at the mass centres" of
+/// controls(); an empty plan for a target without pressure.
 Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, double length,
-                             std::uint64_t seed);
+                             int count, std::uint64_t seed);
+/// Returns one draw of the control "random circles, solved pressures"; an empty plan for a target
+/// without pressure.
+Plan random_circles(const TargetField& target, double sigma, const GainLaw& gain, double length,
+                    Random& random);
 
 /// Scores the controls of a target, which a plan must outperform; empty for a target without
 /// pressure:
