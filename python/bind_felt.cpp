@@ -151,10 +151,9 @@ void bind_felt_plan(py::module_& m) {
 void bind_felt(py::module_& m) {
   bind_skin(m);
   bind_felt_plan(m);
-  m.def(
-      "felt_skins", &felt_skins,
-      "The three skins that plans are fitted to with felt_weight, as a new list of SkinSettings:\n"
-      "waves as fast as those of SkinSettings(), and 0.7 and 1.3 times as fast.");
+  m.def("felt_skins", &felt_skins,
+        "The three skins that preset felt fits its plans to, as a new list of SkinSettings:\n"
+        "waves as fast as those of SkinSettings(), and 0.7 and 1.3 times as fast.");
   m.def(
       "felt_plan",
       [](const Plan& plan, const TargetField& target, double sigma,
@@ -164,7 +163,7 @@ void bind_felt(py::module_& m) {
       },
       "The planner's own model of the percept of a plan in step, in double precision: to choose\n"
       "pressures or points of your own. The skin is assumed to be flat.\n\n"
-      "plan: a Plan of paths with a loop, like those planned with felt_weight: each path starts "
+      "plan: a Plan of paths with a loop, like those of preset felt: each path starts "
       "at\n"
       "its first point and makes loop / period laps in a loop, rounded. target:\n"
       "the TargetField that it renders. sigma: fall-off of a focal point [m], 1e-3 to 50e-3.\n"

@@ -96,6 +96,21 @@ class Writer : public SettingsWriter {
     if (at == names.end()) refuse_name((type_ + "." + name_).c_str(), name, names);
     index = static_cast<int>(at - names.begin());
   }
+  bool replaced(const Setting& s) override {
+    if (s.name != name_) return false;
+    double value = 0.0;
+    if (is_bool()) {
+      value = value_.cast<bool>() ? 1.0 : 0.0;
+      found = true;
+    } else {
+      field(s, value);
+    }
+    require_bounds(s, value);
+    if (value == 0.0) return false;
+    const std::string text = replacement_text(type_, s);
+    if (PyErr_WarnEx(PyExc_FutureWarning, text.c_str(), 2) != 0) throw py::error_already_set();
+    return true;
+  }
 
   bool found = false;
 
@@ -140,8 +155,12 @@ void set_setting(const SettingsGroup& group, const std::string& name, py::handle
 }
 
 void set_settings(const SettingsGroup& group, const py::dict& values) {
-  for (const auto& [name, value] : values) {
-    set_setting(group, name.cast<std::string>(), value);
+  // settings that have been replaced come last, since they depend on their replacements
+  const py::dict known = settings_dict(group);
+  for (const bool replaced : {false, true}) {
+    for (const auto& [name, value] : values) {
+      if (known.contains(name) != replaced) set_setting(group, name.cast<std::string>(), value);
+    }
   }
 }
 

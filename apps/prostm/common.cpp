@@ -108,20 +108,20 @@ std::string doubt_of_array(const PipelineSettings& settings) {
 PipelineSettings make_settings(const CommonOptions& options,
                                const std::optional<std::string>& scene, bool plays) {
   PipelineSettings settings;
-  std::vector<std::string> given;
+  GivenSettings given;
   if (!options.settings_file.empty())
     given = read_settings(options.settings_file, settings_groups(settings));
+  for (const std::string& sentence : given.warnings) warn(sentence);
   if (options.world) settings.world = *options.world;
   const WorldKind& world = world_named(settings.world);
-  if (settings.world != PipelineSettings().world &&
-      std::ranges::count(given, "pipeline.scene") == 0)
+  if (settings.world != PipelineSettings().world && !given.has("pipeline.scene"))
     choose_world(world, settings);
   if (scene) settings.scene = *scene;
   if (options.device) settings.device = *options.device;
   if (options.array) settings.array = *options.array;
   if (options.tracker) settings.tracker = *options.tracker;
   if (!options.settings_file.empty()) check_files_of(settings, options);
-  const bool is_array_chosen = options.array || std::ranges::count(given, "pipeline.array") > 0;
+  const bool is_array_chosen = options.array || given.has("pipeline.array");
   if (plays) {
     settle_array(settings, is_array_chosen);
   } else {
@@ -132,9 +132,8 @@ PipelineSettings make_settings(const CommonOptions& options,
   if (options.seed) settings.plan.seed = settings.scripted_hand.seed = *options.seed;
   if (options.method) settings.method = from_name<Method>(*options.method, "--method");
   const bool is_am = settings.method == Method::Am;
-  const bool gives_width = std::ranges::any_of(given, [is_am](const std::string& name) {
-    return name == "pipeline.array_width" || name == (is_am ? "am.sigma" : "plan.sigma");
-  });
+  const bool gives_width =
+      given.has("pipeline.array_width") || given.has(is_am ? "am.sigma" : "plan.sigma");
   if (!gives_width && (plays || options.array)) settings.array_width = true;
   if (options.preset) settings.plan.preset = from_name<Preset>(*options.preset, "--preset");
   if (options.paths) settings.plan.paths = settings.am.foci = settings.emit.foci = *options.paths;
@@ -335,14 +334,11 @@ std::string felt_words(const PipelineSettings& settings) {
         "(plan.strength_weight {:g}); nobody has felt it",
         settings.plan.strength_weight);
   }
-  const double weight = am ? settings.am.felt_weight : settings.plan.felt_weight;
-  if (weight == 0.0) return {};
-  const char* chosen = am                          ? "pressures and phases"
-                       : settings.plan.felt_points ? "points and pressures"
-                                                   : "pressures";
+  if (!am || settings.am.felt_weight == 0.0) return {};
   return fmt::format(
-      "{} chosen by what the model of the skin feels ({}.felt_weight {:g}); nobody has felt it",
-      chosen, am ? "am" : "plan", weight);
+      "pressures and phases chosen by what the model of the skin feels (am.felt_weight {:g}); "
+      "nobody has felt it",
+      settings.am.felt_weight);
 }
 
 void print_metrics(std::FILE* out, const std::string& heading,

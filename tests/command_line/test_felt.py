@@ -35,31 +35,14 @@ def line_with(text, words):
     return lines[0]
 
 
-def test_the_weight_is_off_by_default_and_exists_for_both_methods(prostm):
+def test_the_percept_chooses_nothing_by_default(prostm):
     rows = json.loads(prostm("settings", "felt_weight", "--json", "-").stdout)["settings"]
-    assert [(row["group"], row["value"], row["least"], row["most"]) for row in rows] == [
-        ("plan", 0, 0, 1), ("am", 0, 0, 1)]
-    assert all("0: off" in row["help"] for row in rows)
+    assert [(row["group"], row["value"], row["least"], row["most"]) for row in rows] == [("am", 0, 0, 1)]
+    assert "0: off" in rows[0]["help"]
     for method in ("pro-stm", "am"):
         text = prostm("plan", FIELD, "--method", method).stdout
         assert "in step" not in text and "nobody has felt" not in text and "late" not in text
     assert "loop_ms" not in plan_of(prostm)
-
-
-@pytest.mark.parametrize("points, chosen", [("false", "pressures"), pytest.param("true", "points and pressures",
-                                                                                marks=pytest.mark.long)])
-def test_one_line_reports_the_optimisation_and_that_it_is_untested_on_people(prostm, settings, points, chosen):
-    file = settings(f"[plan]\nfelt_weight = 0.9\nfelt_points = {points}\n")
-    line = line_with(prostm("plan", FIELD, "--settings", file).stdout, "nobody has felt it")
-    plan = plan_of(prostm, "--settings", file)
-    assert line == (f"  in step: all paths come round together every {plan['loop_ms']:.1f} ms; {chosen} chosen by "
-                    "what the model of the skin feels (plan.felt_weight 0.9); nobody has felt it")
-    assert 10 <= plan["loop_ms"] <= 20
-    for path in plan["paths"]:
-        laps = plan["loop_ms"] / path["period_ms"]
-        assert laps == pytest.approx(round(laps), abs=1e-9) and path["speed_m_s"] <= 7 * (1 + 1e-9)
-    assert plan["settings"]["plan"]["felt_weight"] == 0.9
-    assert plan["paths"] == plan_of(prostm, "--settings", file)["paths"]
 
 
 def test_the_preset_reports_what_it_chose(prostm, settings):
@@ -68,8 +51,32 @@ def test_the_preset_reports_what_it_chose(prostm, settings):
     assert line_with(text, "nobody has felt it") == (
         f"  in step: all paths come round together every {plan['loop_ms']:.1f} ms; number of paths, points and pressures "
         "chosen by what the model of the skin feels (plan.strength_weight 0.1); nobody has felt it")
+    assert 10 <= plan["loop_ms"] <= 20
+    for path in plan["paths"]:
+        laps = plan["loop_ms"] / path["period_ms"]
+        assert laps == pytest.approx(round(laps), abs=1e-9) and path["speed_m_s"] <= 7 * (1 + 1e-9)
     stronger = plan_of(prostm, "--preset", "felt", "--settings", settings("[plan]\nstrength_weight = 5\n"))
     assert len(stronger["paths"]) == 1 <= len(plan["paths"]) <= 4
+
+
+@pytest.mark.parametrize("text, line, name", [
+    ("[plan]\nfelt_weight = 0.9\n", 2, "felt_weight"),
+    ('[plan]\npreset = "fast"\nfelt_points = true\n', 3, "felt_points"),
+])
+def test_settings_of_earlier_versions_select_the_preset_with_a_warning(prostm, settings, text, line, name):
+    done = prostm("plan", FIELD, "--settings", settings(text), "--json", "plan.json")
+    assert done.stderr.startswith(
+        f'prostm: warning: s.toml, line {line}: plan.{name} was replaced by preset "felt", which is used\n')
+    assert done.stderr.count("warning: s.toml") == 1 and "plan.strength_weight" in done.stdout
+    done = prostm("plan", FIELD, "--settings", "s.toml", "--preset", "fast", "--json", "-")
+    assert json.loads(done.stdout)["settings"]["plan"]["preset"] == "fast"
+
+
+def test_settings_of_earlier_versions_that_were_off_have_no_effect(prostm, settings):
+    file = settings("[plan]\nfelt_weight = 0\nfelt_points = false\n")
+    done = prostm("plan", FIELD, "--settings", file, "--json", "-")
+    assert "replaced" not in done.stderr
+    assert json.loads(done.stdout)["paths"] == plan_of(prostm)["paths"]
 
 
 def test_am_reports_it_too(prostm, settings):
@@ -82,15 +89,14 @@ def test_am_reports_it_too(prostm, settings):
 
 
 @pytest.mark.long
-def test_with_an_array_the_verdict_is_about_the_felt_field(prostm, settings):
-    file = settings("[plan]\nfelt_weight = 0.9\n")
+def test_with_an_array_the_verdict_is_about_the_felt_field(prostm):
     end = " (1 is perfect, 0 is no better than an even field)"
-    metrics = plan_of(prostm, "--array", "usx", "--settings", file)["metrics"]
-    lines = prostm("plan", FIELD, "--array", "usx", "--settings", file).stdout.splitlines()
+    metrics = plan_of(prostm, "--array", "usx", "--preset", "felt")["metrics"]
+    lines = prostm("plan", FIELD, "--array", "usx", "--preset", "felt").stdout.splitlines()
     assert lines[1] == (f"4 paths render this field with skill {metrics['skill_0']:.2f} as pressure and "
                         f"skill_8 {metrics['felt_skill']:.2f} as felt by the model{end}")
-    metrics = plan_of(prostm, "--settings", file)["metrics"]
-    lines = prostm("plan", FIELD, "--settings", file).stdout.splitlines()
+    metrics = plan_of(prostm, "--preset", "felt")["metrics"]
+    lines = prostm("plan", FIELD, "--preset", "felt").stdout.splitlines()
     assert lines[1] == (f"4 paths render this field with skill {metrics['skill_0']:.2f} as pressure; "
                         f"--array judges what is felt{end}")
 
@@ -104,12 +110,11 @@ def test_a_pressure_field_that_loses_to_a_control_does_not_imply_that_the_felt_f
 
 
 @pytest.mark.long
-def test_the_arrays_own_field_is_felt_more_like_the_target(prostm, settings):
+def test_the_arrays_own_field_is_felt_more_like_the_target(prostm):
     lack = {}
-    for weight in (0, 0.9):
-        plan = plan_of(prostm, "--array", "usx", "--settings", settings(f"[plan]\nfelt_weight = {weight}\n"))
-        lack[weight] = 1 - plan["metrics"]["felt_skill"]
-    assert lack[0.9] < 0.75 * lack[0]
+    for preset in ("best", "felt"):
+        lack[preset] = 1 - plan_of(prostm, "--array", "usx", "--preset", preset)["metrics"]["felt_skill"]
+    assert lack["felt"] < 0.75 * lack["best"]
 
 
 @pytest.mark.parametrize("text, options, words", [
@@ -117,27 +122,27 @@ def test_the_arrays_own_field_is_felt_more_like_the_target(prostm, settings):
     ("[plan]\nfelt_weight = -0.1\n", [], "plan.felt_weight = -0.1 must be between 0 and 1"),
     ("[plan]\nfelt_weight = nan\n", [], "s.toml, line 2: plan.felt_weight must be finite"),
     ("[am]\nfelt_weight = 2\n", ["--method", "am"], "am.felt_weight = 2 must be between 0 and 1"),
-    ("[plan]\nfelt_points = 1\n", [], "plan.felt_points"),
-    ('[plan]\nfelt_weight = "much"\n', [], "plan.felt_weight"),
-    ("[plan]\nfelt_wieght = 0.9\n", [], "felt_weight"),
-    ('[plan]\nfelt_weight = 0.9\npreset = "paper"\n', [], "felt_weight is for presets best and fast, not paper"),
-    ("[plan]\nfelt_weight = 0.9\n", ["--preset", "paper-valid"],
-     "felt_weight is for presets best and fast, not paper-valid"),
+    ('[plan]\nfelt_weight = "much"\n', [], "s.toml, line 2: plan.felt_weight must be a number"),
+    ("[am]\nfelt_wieght = 0.9\n", [], "felt_weight"),
+    ('[plan]\nfelt_weight = 0.9\npreset = "paper"\n', [],
+     "s.toml: plan.felt_weight selects preset felt, but the preset is paper: remove one of them"),
 ])
 def test_invalid_options_are_rejected(refuses, settings, text, options, words):
     refuses("plan", FIELD, "--settings", settings(text), *options, words=[words])
 
 
-@pytest.mark.parametrize("group, method", [("plan", "pro-stm"), ("am", "am")])
-def test_a_run_plays_such_plans(prostm, settings, tmp_path, group, method):
-    file = settings(f"[{group}]\nfelt_weight = 0.9\n")
-    done = prostm("run", "--settings", file, "--method", method, "--grid", "32", "--seconds", "1.5", "--stepped",
+@pytest.mark.parametrize("text, method, words", [
+    ('[plan]\npreset = "felt"\n', "pro-stm", "(plan.strength_weight 0.1)"),
+    ("[am]\nfelt_weight = 0.9\n", "am", "(am.felt_weight 0.9)"),
+])
+def test_a_run_plays_such_plans(prostm, settings, tmp_path, text, method, words):
+    done = prostm("run", "--settings", settings(text), "--method", method, "--grid", "32", "--seconds", "1.5", "--stepped",
                   "--record", "run.h5")
-    assert f"({group}.felt_weight 0.9); nobody has felt it" in line_with(done.stdout, "  felt ")
+    assert f"{words}; nobody has felt it" in line_with(done.stdout, "  felt ")
     with h5py.File(tmp_path / "run.h5") as recording:
         loops, phases = recording["plan/loop"][:], recording["plan/focus_phase"][:]
-    assert (0.01 <= loops.max() <= 0.02) == (group == "plan") and loops.max() <= 0.02
-    assert (np.nanmax(phases, initial=0) > 0) == (group == "am")
+    assert (0.01 <= loops.max() <= 0.02) == (method == "pro-stm") and loops.max() <= 0.02
+    assert (np.nanmax(phases, initial=0) > 0) == (method == "am")
 
 
 

@@ -28,7 +28,10 @@ struct Stove {
   Heat heat = Heat::Low;
   int rings = 4;
   void visit(SettingsReader& v) const { list(*this, v); }
-  void visit(SettingsWriter& v) { list(*this, v); }
+  void visit(SettingsWriter& v) {
+    list(*this, v);
+    if (v.replaced({"flame", "", 0, 3, "heat \"high\""})) heat = Heat::High;
+  }
 
  private:
   template <class Self, class Visitor>
@@ -74,12 +77,36 @@ TEST(Settings, RoundTripThroughJson) {
   EXPECT_EQ(json["oven"]["heat"], "low");
 }
 
+TEST(Settings, ThatWereReplacedSetTheirReplacementWithAWarning) {
+  for (const char* value : {"2", "0.5", "true"}) {
+    Kitchen kitchen;
+    const GivenSettings given = settings_from_toml(
+        std::string("[oven]\nplates = 1\nflame = ") + value + "\n", "s.toml", kitchen.groups());
+    EXPECT_THAT(given.warnings,
+                testing::ElementsAre(
+                    "s.toml, line 3: oven.flame was replaced by heat \"high\", which is used"));
+    EXPECT_TRUE(given.has("oven.flame"));
+    EXPECT_EQ(kitchen.oven.heat, Heat::High);
+    EXPECT_EQ(kitchen.stove.heat, Heat::Low);
+  }
+  for (const char* value : {"0", "0.0", "false"}) {
+    Kitchen kitchen;
+    const GivenSettings given = settings_from_toml(std::string("[oven]\nflame = ") + value + "\n",
+                                                   "s.toml", kitchen.groups());
+    EXPECT_THAT(given.warnings, testing::IsEmpty());
+    EXPECT_EQ(kitchen.oven.heat, Heat::Low);
+  }
+}
+
 TEST(Settings, AreReadFromAFile) {
   const test::TemporaryFolder folder;
   Kitchen kitchen;
   write_file(folder.file("s.toml"), "stove.plates = 2\n");
-  EXPECT_THAT(read_settings(folder.file("s.toml"), kitchen.groups()),
-              testing::ElementsAre("stove.plates"));
+  const GivenSettings given = read_settings(folder.file("s.toml"), kitchen.groups());
+  EXPECT_THAT(given.names, testing::ElementsAre("stove.plates"));
+  EXPECT_TRUE(given.has("stove.plates"));
+  EXPECT_FALSE(given.has("stove.gas"));
+  EXPECT_THAT(given.warnings, testing::IsEmpty());
   EXPECT_EQ(kitchen.stove.plates, 2);
   EXPECT_THAT(input_error([&] { read_settings(folder.file("none.toml"), kitchen.groups()); }),
               HasSubstr("cannot be read"));
@@ -90,7 +117,7 @@ TEST(Settings, MayBeAnEmptyFile) {
   Kitchen kitchen;
   for (const char* text : {"", "\n", "# nothing yet\n"}) {
     write_file(folder.file("s.toml"), text);
-    EXPECT_THAT(read_settings(folder.file("s.toml"), kitchen.groups()), testing::IsEmpty());
+    EXPECT_THAT(read_settings(folder.file("s.toml"), kitchen.groups()).names, testing::IsEmpty());
   }
 }
 
@@ -116,6 +143,8 @@ TEST(Settings, ReportErrorsWithTheirPosition) {
       {"[stove]\n\npower = 11", "s.toml, line 3: stove.power = 11 kW must be between 0 and 10 kW"},
       {"[stove]\nplates = -2", "s.toml, line 2: stove.plates = -2 must be between -1 and 8"},
       {"[stove]\npower = \"high\"", "s.toml, line 2: stove.power must be a number"},
+      {"[stove]\nflame = 4", "s.toml, line 2: stove.flame = 4 must be between 0 and 3"},
+      {"[stove]\nflame = \"hot\"", "s.toml, line 2: stove.flame must be a number"},
       {"[stove]\npower = inf", "stove.power must be finite"},
       {"[stove]\npower = nan", "stove.power must be finite"},
       {"[stove]\nplates = 2.0", "stove.plates must be a whole number"},

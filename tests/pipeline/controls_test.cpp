@@ -164,48 +164,37 @@ const RunControl& control_of(const char* id) {
   return run_controls()[static_cast<std::size_t>(control_index(id))];
 }
 
-// moving the points takes longer than a real-time run allows
-TEST(Controls, MovingPointsIsRejectedWithinAShortBudget) {
-  LiveSettings s = small_settings();
-  control_of("felt_weight").set(s, 0.9);
-  s.pipeline.plan.felt_points = true;
-  EXPECT_NO_THROW(validate(s.pipeline.plan));
-  s.pipeline.plan.budget = 8e-3;
-  EXPECT_THROW(validate(s.pipeline.plan), std::invalid_argument);
-  s.pipeline.plan.felt_points = false;
-  EXPECT_NO_THROW(validate(s.pipeline.plan));
-}
-
 // otherwise a page's change would be rejected
-TEST(Controls, PresetsToWhichItDoesNotApplyTurnOffTheFeltWeight) {
+TEST(Controls, EveryPresetIsAccepted) {
   for (const Preset preset : {Preset::Paper, Preset::PaperValid, Preset::Fast, Preset::Felt}) {
     LiveSettings s = small_settings();
     Pipeline pipeline = pipeline_of(s);
-    control_of("felt_weight").set(s, 0.9);
-    ASSERT_NO_THROW(pipeline.reconfigure(s.pipeline));
     control_of("preset").set(s, static_cast<double>(preset));
     EXPECT_NO_THROW(pipeline.reconfigure(s.pipeline));
-    const bool applies = preset == Preset::Fast;
-    EXPECT_EQ(s.pipeline.plan.felt_weight, applies ? 0.9 : 0.0);
-    EXPECT_EQ(control_of("felt_weight").enabled(s), applies);
     EXPECT_EQ(control_of("strength_weight").enabled(s), preset == Preset::Felt);
     EXPECT_FALSE(control_of("am_felt_weight").enabled(s));
   }
 }
 
-// a new plan is in step from the next update on, and no longer once the weight is 0
-TEST(Controls, TheFeltWeightCanBeChangedInARun) {
+// a new plan is in step from the next update on, and no longer with another preset
+TEST(Controls, ThePresetCanBeChangedInARun) {
   LiveSettings s = small_settings();
   Pipeline pipeline = pipeline_of(s);
   for (int i = 0; i < 65; ++i) pipeline.step(0.02);
-  for (const double weight : {0.9, 0.0, 0.5}) {
-    control_of("felt_weight").set(s, weight);
+  for (const Preset preset : {Preset::Felt, Preset::Fast, Preset::Felt}) {
+    control_of("preset").set(s, static_cast<double>(preset));
     pipeline.reconfigure(s.pipeline);
     while (!pipeline.step(0.02)) {
     }
     ASSERT_EQ(pipeline.plan().status, PlanStatus::Planned);
-    EXPECT_EQ(pipeline.plan().plan.loop > 0.0, weight > 0.0);
+    EXPECT_EQ(pipeline.plan().plan.loop > 0.0, preset == Preset::Felt);
   }
+}
+
+TEST(Controls, TheFeltWeightOfAmDelaysFoci) {
+  LiveSettings s = small_settings();
+  Pipeline pipeline = pipeline_of(s);
+  for (int i = 0; i < 65; ++i) pipeline.step(0.02);
   control_of("method").set(s, static_cast<double>(Method::Am));
   const auto late = [&] {
     pipeline.reconfigure(s.pipeline);
@@ -214,7 +203,7 @@ TEST(Controls, TheFeltWeightCanBeChangedInARun) {
     const FocalPoints& foci = pipeline.plan().plan.foci;
     return std::any_of(foci.begin(), foci.end(), [](const FocalPoint& f) { return f.phase > 0.0; });
   };
-  EXPECT_FALSE(late()) << "the weight of paths is not that of foci";
+  EXPECT_FALSE(late());
   control_of("am_felt_weight").set(s, 0.9);
   EXPECT_TRUE(late());
 }

@@ -63,6 +63,18 @@ TEST(OwnPreset, AcceptsTheSettingsOfItsTraits) {
   }
 }
 
+// moving the points takes longer than a real-time run allows
+TEST(PlanSettings, RejectPointsMovedByThePerceptWithABudget) {
+  PlanSettings settings;
+  settings.felt_weight = 0.9;
+  settings.felt_points = true;
+  EXPECT_NO_THROW(validate(settings));
+  settings.budget = 8e-3;
+  EXPECT_THROW(validate(settings), std::invalid_argument);
+  settings.felt_points = false;
+  EXPECT_NO_THROW(validate(settings));
+}
+
 TEST(Presets, AreListedByTheirTraits) {
   EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.takes_budget; }), "preset best");
   EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.is_fitted(); }),

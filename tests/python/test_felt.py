@@ -18,7 +18,7 @@ def field():
 
 @pytest.fixture(scope="module")
 def plan(field):
-    return prostm.plan(field, felt_weight=0.9, sigma=SIGMA).plan
+    return prostm.plan(field, preset="felt", sigma=SIGMA).plan
 
 
 def with_path(plan, k, points=None, pressure=None):
@@ -79,7 +79,7 @@ def test_the_gradient_matches_the_lack(field, plan):
     def lack(**changed):
         return prostm.felt_plan(with_path(plan, k, **changed), field, SIGMA).lack
 
-    for k, i in [(0, 0), (1, 13), (len(plan.paths) - 1, 40)]:
+    for k, i in [(0, 0), (1, 13), (len(plan.paths) - 1, 19)]:
         path = plan.paths[k]
         one = np.zeros(len(path.pressure))
         one[i] = 1e-5 * largest
@@ -92,23 +92,31 @@ def test_the_gradient_matches_the_lack(field, plan):
             assert 1e-3 * felt.by_point[k][i, axis] == pytest.approx(slope, abs=1e-6)
 
 
-def test_the_lack_falls_with_the_weight_and_again_with_the_points(field):
+def test_the_preset_lacks_less_than_best(field):
     def lack(**settings):
         own = prostm.plan(field, sigma=SIGMA, **settings).plan
         return prostm.felt_plan(prostm.Plan(own.paths, loop=own.loop or 0.02), field, SIGMA).lack
 
-    lacks = [lack(), lack(felt_weight=0.5), lack(felt_weight=0.9), lack(felt_weight=0.9, felt_points=True)]
-    assert lacks == sorted(lacks, reverse=True) and len(set(lacks)) == 4
-    assert lacks[2] < 0.65 * lacks[0]
+    assert lack(preset="felt") < 0.75 * lack()
+
+
+def test_settings_of_earlier_versions_select_the_preset_with_a_warning(field, plan):
+    for old in ({"felt_weight": 0.9}, {"felt_points": True, "preset": "fast"}):
+        words = f'PlanSettings.{next(iter(old))} was replaced by preset "felt", which is used'
+        with pytest.warns(FutureWarning, match=words) as warnings:
+            own = prostm.plan(field, sigma=SIGMA, **old).plan
+        assert len(warnings) == 1
+        assert own.loop == plan.loop and len(own.paths) == len(plan.paths)
+    assert prostm.PlanSettings(felt_weight=0, felt_points=False).preset == "best"
+    assert "felt_weight" not in repr(prostm.PlanSettings())
 
 
 def test_felt_plans_are_in_step(field, plan):
-    for own in (plan, prostm.plan(field, felt_weight=0.9, felt_points=True, sigma=SIGMA).plan):
-        assert 0.01 <= own.loop <= 0.02  # at most 1 / draw_rate
-        for path in own.paths:
-            laps = own.loop / path.period
-            assert laps == pytest.approx(round(laps), abs=1e-9) and path.speed <= 7 * (1 + 1e-9)
-    assert prostm.plan(field).plan.loop == 0 and prostm.plan(field, felt_points=True).plan.loop == 0
+    assert 0.01 <= plan.loop <= 0.02  # at most 1 / draw_rate
+    for path in plan.paths:
+        laps = plan.loop / path.period
+        assert laps == pytest.approx(round(laps), abs=1e-9) and path.speed <= 7 * (1 + 1e-9)
+    assert prostm.plan(field).plan.loop == 0
     foci = prostm.plan(field, method="am", felt_weight=0.9).foci
     assert any(focus.phase > 0 for focus in foci)
     assert all(focus.phase == 0 for focus in prostm.plan(field, method="am").foci)
@@ -136,7 +144,7 @@ def test_skins_are_values(field, plan):
 
 def test_errors_are_sentences(field, plan):
     for words, wrong in [
-        ("not in step.*felt_weight", prostm.Plan(plan.paths)),
+        ("not in step.*preset felt", prostm.Plan(plan.paths)),
         ("no path", prostm.Plan()),
         ("no path", prostm.Plan(foci=[prostm.FocalPoint([0, 0], 1.0)])),
         ("fewer than 3 points", prostm.Plan([prostm.FocalPath([[0, 0], [0.01, 0]], 1.0)], loop=0.02)),
@@ -154,7 +162,7 @@ def test_errors_are_sentences(field, plan):
         with pytest.raises(ValueError, match=words):
             prostm.felt_plan(*arguments)
     for words, settings in [
-        ("felt_weight is for presets best and fast, not paper", {"preset": "paper"}),
+        ("felt_weight selects preset felt, but the preset is paper: remove one of them", {"preset": "paper"}),
         ("felt_weight = 1.1 must be between 0 and 1", {"felt_weight": 1.1}),
         ("felt_weight = -1 must be between 0 and 1", {"felt_weight": -1, "method": "am"}),
     ]:

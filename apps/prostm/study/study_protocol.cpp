@@ -32,6 +32,7 @@ PipelineSettings study_settings(const CommonOptions& common) {
 
 Protocol live_protocol(const std::string& path, const PipelineSettings& base) {
   Protocol protocol = read_protocol(path, base);
+  for (const std::string& sentence : protocol.warnings) warn(sentence);
   for (StudyMethod& method : protocol.methods) settle(method, path);
   if (protocol.standard) settle(*protocol.standard, path);
   return protocol;

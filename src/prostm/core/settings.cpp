@@ -77,6 +77,10 @@ class RowCollector : public SettingsReader {
 
 }  // namespace
 
+std::string replacement_text(const std::string& group, const Setting& setting) {
+  return group + "." + setting.name + " was replaced by " + setting.help + ", which is used";
+}
+
 std::string bounds_text(const Setting& setting) {
   const bool below = std::isfinite(setting.least), above = std::isfinite(setting.most);
   if (!below && !above) return "";

@@ -40,6 +40,9 @@ class SettingsWriter {
   /// Visits one of several names, by index.
   virtual void choice(const Setting& setting, std::span<const std::string_view> names,
                       int& index) = 0;
+  /// Visits a setting of earlier versions, a number or a boolean that `setting.help` has replaced.
+  /// @return whether it is given and neither 0 nor false.
+  virtual bool replaced(const Setting& /*setting*/) { return false; }
 
   template <class E>
   requires std::is_enum_v<E>
@@ -89,6 +92,9 @@ SettingsGroup group_of(std::string name, Settings&... settings) {
   }
   return group;
 }
+
+/// Returns the sentence that a setting of earlier versions has been replaced, without a full stop.
+std::string replacement_text(const std::string& group, const Setting& setting);
 
 /// The bounds of a number in words, with its unit: "0.1 to 100 m/s", "at least 0", or nothing.
 std::string bounds_text(const Setting& setting);

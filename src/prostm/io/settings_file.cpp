@@ -73,6 +73,19 @@ class TomlReader : public SettingsWriter {
     if (found == names.end()) fail(s.name, *table_.get(s.name), must_be(name, names).c_str());
     index = static_cast<int>(found - names.begin());
   }
+  bool replaced(const Setting& s) override {
+    replaced_names.emplace_back(s.name);
+    const toml::node* node = table_.get(s.name);
+    if (node == nullptr) return false;
+    double value = node->is_boolean() && node->as_boolean()->get() ? 1.0 : 0.0;
+    if (!node->is_boolean()) field(s, value);
+    if (value == 0.0) return false;
+    warnings.push_back(fmt::format("{}, line {}: {}", file_, node->source().begin.line,
+                                   replacement_text(group_, s)));
+    return true;
+  }
+
+  std::vector<std::string> replaced_names, warnings;
 
  private:
   [[noreturn]] void fail(const char* name, const toml::node& node, const char* bound) const {
@@ -121,18 +134,23 @@ toml::table parse_toml(std::string_view text, const std::string& file) {
 }
 
 void read_group(const toml::table& table, const SettingsGroup& group, const std::string& file,
-                std::vector<std::string>& given) {
+                GivenSettings& given) {
+  TomlReader reader(table, file, group.name);
+  try {
+    group.write(reader);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}.{}", file, group.name, error.what()));
+  }
   const std::vector<std::string> known = names_of(group);
   for (const auto& [key, node] : table) {
-    if (!is_among(known, key.str())) {
+    if (!is_among(known, key.str()) && !is_among(reader.replaced_names, key.str())) {
       throw InputError(fmt::format("{}, line {}: {} has no setting \"{}\"; {}", file,
                                    key.source().begin.line, group.name, shown_name(key.str()),
                                    suggestion(key.str(), known)));
     }
-    given.push_back(group.name + "." + std::string(key.str()));
+    given.names.push_back(group.name + "." + std::string(key.str()));
   }
-  TomlReader reader(table, file, group.name);
-  group.write(reader);
+  given.warnings.insert(given.warnings.end(), reader.warnings.begin(), reader.warnings.end());
 }
 
 /// Throws an InputError that no group has this name; for a setting outside its group, it names the
@@ -157,17 +175,20 @@ void read_group(const toml::table& table, const SettingsGroup& group, const std:
 
 }  // namespace
 
-std::vector<std::string> read_settings(const std::string& path,
-                                       const std::vector<SettingsGroup>& groups) {
+bool GivenSettings::has(std::string_view name) const {
+  return is_among(names, name);
+}
+
+GivenSettings read_settings(const std::string& path, const std::vector<SettingsGroup>& groups) {
   constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
   return settings_from_toml(read_file(path, kMaxBytes, Empty::Allowed), path, groups);
 }
 
-std::vector<std::string> settings_from_toml(std::string_view text, const std::string& name,
-                                            const std::vector<SettingsGroup>& groups,
-                                            const std::vector<std::string>& inside,
-                                            const std::vector<std::string>& others) {
-  std::vector<std::string> given;
+GivenSettings settings_from_toml(std::string_view text, const std::string& name,
+                                 const std::vector<SettingsGroup>& groups,
+                                 const std::vector<std::string>& inside,
+                                 const std::vector<std::string>& others) {
+  GivenSettings given;
   const toml::table document = parse_toml(text, name);
   const toml::table* whole = &document;
   for (const std::string& key : inside) {

@@ -10,18 +10,24 @@
 
 namespace prostm {
 
+/// Settings read from a file.
+struct GivenSettings {
+  std::vector<std::string> names;     ///< of its settings, e.g. "plan.sigma"
+  std::vector<std::string> warnings;  ///< a sentence for each that has been replaced
+
+  bool has(std::string_view name) const;
+};
+
 /// Sets the values in the file and leaves the others unchanged. @throws InputError naming file,
 /// line and key: an unknown group or key (with the nearest known one), a value of the wrong type, a
-/// name that is not one of the choices, a number that is not finite or out of bounds. @return the
-/// names of the settings in the file, e.g. "plan.sigma".
-std::vector<std::string> read_settings(const std::string& path,
-                                       const std::vector<SettingsGroup>& groups);
+/// name that is not one of the choices, a number that is not finite or out of bounds.
+GivenSettings read_settings(const std::string& path, const std::vector<SettingsGroup>& groups);
 /// The same from text. @param inside table that contains the groups, e.g. {"method", "am"}; empty:
 /// the document. @param others other tables, which are read elsewhere.
-std::vector<std::string> settings_from_toml(std::string_view text, const std::string& name,
-                                            const std::vector<SettingsGroup>& groups,
-                                            const std::vector<std::string>& inside = {},
-                                            const std::vector<std::string>& others = {});
+GivenSettings settings_from_toml(std::string_view text, const std::string& name,
+                                 const std::vector<SettingsGroup>& groups,
+                                 const std::vector<std::string>& inside = {},
+                                 const std::vector<std::string>& others = {});
 
 /// Returns the line of a key or table of the document, e.g. {"method", "am", "plan"}; 0 if it is
 /// missing. @throws InputError: not TOML.

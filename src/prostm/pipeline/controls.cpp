@@ -75,9 +75,6 @@ bool is_pro_stm(const LiveSettings& s) {
 bool is_fitted(const LiveSettings& s) {
   return is_pro_stm(s) && s.pipeline.plan.traits().is_fitted();
 }
-bool takes_felt_weight(const LiveSettings& s) {
-  return is_pro_stm(s) && s.pipeline.plan.traits().takes_felt_weight();
-}
 bool is_felt(const LiveSettings& s) {
   return is_pro_stm(s) && s.pipeline.plan.traits().chooses_by_percept;
 }
@@ -102,13 +99,11 @@ bool has_source(const LiveSettings& s, std::size_t place) {
 
 // ---- setters shared by controls ----
 
-/// Sets the preset. In real time, a preset with a time budget gets a share of an update. Presets
-/// to which the felt weight does not apply reject it.
+/// Sets the preset. In real time, a preset with a time budget gets a share of an update.
 void set_preset(LiveSettings& s, double value) {
   PlanSettings& plan = s.pipeline.plan;
   plan.preset = static_cast<Preset>(value);
   plan.budget = plan.traits().takes_budget ? kLiveBudget : 0.0;
-  if (!plan.traits().takes_felt_weight()) plan.felt_weight = 0.0;
 }
 
 void set_paths(LiveSettings& s, double value) {
@@ -260,11 +255,6 @@ std::vector<RunControl> plan_controls() {
   list.number("bending", "Smoothness", "", 0, 0.3, 0.01,
               member([](auto& s) -> auto& { return s.pipeline.plan.fit_bending; }), is_fitted,
               "Cost of bends in a path, for presets Best, Fast and Felt.");
-  list.number("felt_weight", "What is felt", "", 0, 1, 0.05,
-              member([](auto& s) -> auto& { return s.pipeline.plan.felt_weight; }),
-              takes_felt_weight,
-              "Weight of the skin model when Best and Fast choose pressures; the paths are then "
-              "synchronised. 0 is off, 0.9 is recommended. Nobody has felt it.");
   list.number(
       "strength_weight", "Strength", "", 0, 1, 0.05,
       member([](auto& s) -> auto& { return s.pipeline.plan.strength_weight; }), is_felt,

@@ -22,7 +22,7 @@ double check(const Plan& plan, const TargetField& target, std::span<const SkinSe
   if (plan.paths.empty()) throw std::invalid_argument("the plan has no path, so nothing is felt");
   if (!(plan.loop > 0.0)) {
     throw std::invalid_argument(
-        "the plan is not in step: its paths have no common loop. Plan with felt_weight above 0");
+        "the plan is not in step: its paths have no common loop. Plan with preset felt");
   }
   if (skins.empty()) throw std::invalid_argument("skins is empty; give at least one skin");
   validate(target);

@@ -22,12 +22,6 @@ void list_fit(Settings& s, Visitor& v) {
   v.field({"fit_length", "", 0, 1000, "weight of length and uneven points"}, s.fit_length);
   v.field({"fit_spacing", "", 0, 1000, "weight of points that are too near"}, s.fit_spacing);
   v.field({"fit_bending", "", 0, 1000, "weight of bends"}, s.fit_bending);
-  v.field({"felt_weight", "", 0, 1,
-           "weight of the percept when best and fast choose pressures; 0: off"},
-          s.felt_weight);
-  v.field({.name = "felt_points",
-           .help = "with felt_weight: whether to move the points of paths by the percept, too"},
-          s.felt_points);
   v.field({"strength_weight", "", 0, 10,
            "preset felt: weight of a stronger percept against a truer shape; 0: shape alone"},
           s.strength_weight);
@@ -93,6 +87,16 @@ void PlanSettings::visit(SettingsReader& v) const {
 }
 void PlanSettings::visit(SettingsWriter& v) {
   list(*this, v);
+  constexpr const char* kFelt = "preset \"felt\"";
+  const bool weight = v.replaced({"felt_weight", "", 0, 1, kFelt});
+  const bool points = v.replaced({.name = "felt_points", .help = kFelt});
+  if (!weight && !points) return;
+  if (!traits().is_fitted()) {
+    throw std::invalid_argument(std::string(weight ? "felt_weight" : "felt_points") +
+                                " selects preset felt, but the preset is " +
+                                std::string(traits().name) + ": remove one of them");
+  }
+  preset = Preset::Felt;
 }
 
 double PlanSettings::sigma_on(const TargetField& target) const {

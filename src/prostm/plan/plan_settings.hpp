@@ -41,10 +41,11 @@ struct PlanSettings {
   double fit_length = 1.0;      ///< weight of length and uneven samples, (P13)
   double fit_spacing = 0.3;     ///< weight of samples that are too near, (P14)
   double fit_bending = 0.03;    ///< weight of bending, (P15)
-  /// Weight of the percept when pressures are chosen, 0 to 1, (P19); the field (P10) has the
-  /// rest. 0: pressures are those of the fit.
+  /// Weight of the percept when presets best and fast choose pressures, 0 to 1, (P19); the field
+  /// (P10) has the rest. 0: pressures are those of the fit. Preset felt plans its paths with it; it
+  /// is not a setting in files.
   double felt_weight = 0.0;
-  bool felt_points = false;  ///< whether to move the points of paths by the percept, too
+  bool felt_points = false;  ///< with felt_weight: whether the points of paths move, too
   /// For preset felt: lack of felt shape (W3) that a strength 2.7 times as high is worth, (P25).
   double strength_weight = 0.1;
   int fit_samples = 28;          ///< N in the search of best, 8..64; plans have 2 N, at most 64

@@ -90,7 +90,7 @@ TEST(FeltPlan, RejectsInvalidSettingsWithASentence) {
   TargetField empty = field;
   std::fill(empty.pressure.begin(), empty.pressure.end(), 0.0);
   EXPECT_EQ(message(plan, field, kSigma), "");
-  EXPECT_THAT(message(on_its_own, field, kSigma), testing::HasSubstr("felt_weight"));
+  EXPECT_THAT(message(on_its_own, field, kSigma), testing::HasSubstr("preset felt"));
   EXPECT_THAT(message(silent, field, kSigma), testing::HasSubstr("no pressure"));
   EXPECT_THAT(message(Plan(), field, kSigma), testing::HasSubstr("no path"));
   EXPECT_THAT(message(plan, empty, kSigma), testing::HasSubstr("no pressure"));

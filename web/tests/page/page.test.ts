@@ -237,21 +237,15 @@ describe("controls", () => {
     await turn("method", "pro-stm");
     await planHas(4, "path");
   });
-  it("bring the paths in step with the felt weight, until the paper's presets turn it off", async () => {
+  it("bring the paths in step with preset felt", async () => {
     const inStep = (wanted: boolean) =>
       until(page, (w) => window.prostm.frame!.plan.length > 0 && window.prostm.frame!.plan.every((p) => p.loop > 0 === w), wanted, `paths in step: ${wanted}`);
     const works = (id: string) => page.evaluate((i) => window.prostm.state!.controls.find((c) => c.id === i)!.enabled, id);
     await inStep(false);
-    expect([await works("felt_weight"), await works("am_felt_weight")]).toEqual([true, false]);
-    await turn("felt_weight", 0.9);
-    await inStep(true);
-    await turn("preset", "paper-valid");
-    await becomes("felt_weight", 0);
-    await inStep(false);
-    expect(await works("felt_weight")).toBe(false);
+    expect([await works("strength_weight"), await works("am_felt_weight")]).toEqual([false, false]);
     await turn("preset", "felt");
     await inStep(true);
-    expect([await works("felt_weight"), await works("strength_weight")]).toEqual([false, true]);
+    expect([await works("strength_weight"), await works("am_felt_weight")]).toEqual([true, false]);
     await turn("preset", "best");
     await inStep(false);
   });

@@ -125,6 +125,7 @@ struct Protocol {
   std::vector<StudyMethod> methods;  ///< in the order of the file, like scenes; without `standard`
   std::vector<StudyScene> scenes;
   std::optional<StudyMethod> standard;  ///< the method in level.against, if set
+  std::vector<std::string> warnings;    ///< a sentence for each setting that has been replaced
 };
 
 }  // namespace prostm

@@ -112,10 +112,11 @@ Protocol protocol_from_toml(std::string_view text, const std::string& file,
     StudyMethod& method = protocol.methods.emplace_back(StudyMethod{name, base});
     const auto given =
         settings_from_toml(text, file, settings_groups(method.settings), {"method", name});
-    refuse_settings_of_the_run(given, file, name);
+    protocol.warnings.insert(protocol.warnings.end(), given.warnings.begin(), given.warnings.end());
+    refuse_settings_of_the_run(given.names, file, name);
     study::require_playable_method(method, file, text);
   }
-  study::settle_level(given_above, file, text, protocol);
+  study::settle_level(given_above.names, file, text, protocol);
   const std::size_t conditions = protocol.methods.size() * protocol.scenes.size();
   if (protocol.markers.conditions && conditions > kMostMarkedConditions) {
     throw InputError(fmt::format(
