@@ -68,30 +68,31 @@ bool Output::send_modulation(const SoundingTime& time, Clock::time_point latest)
 }
 
 /// Times of a modulation that begins now and makes output audible from `next` to `end`.
-SoundingTime Output::times_of(Clock::time_point now, Clock::time_point next,
-                              Clock::time_point end) const {
-  const double margin = early(session_.slow_frame());
+/// @param slow_frame longest time that its frame takes [s].
+SoundingTime Output::times_of(Clock::time_point now, Clock::time_point next, Clock::time_point end,
+                              double slow_frame) const {
   SoundingTime time;
   time.next = std::max(0.0, Seconds(next - now).count());
-  time.end = std::min(Seconds(end - now).count() - margin, longest());
+  time.end = std::min(Seconds(end - now).count() - early(slow_frame), longest());
   // output that is already ramping down when this arrives falls silent first, then rises again
-  time.sounds = now >= audible_from_ && now + to_duration(session_.slow_frame()) < audible_until_;
+  time.sounds = now >= audible_from_ && now + to_duration(slow_frame) < audible_until_;
   return time;
 }
 
 bool Output::is_in_time(Clock::time_point next, Clock::time_point end) const {
-  const SoundingTime time = times_of(Clock::now(), next, end);
+  const SoundingTime time = times_of(Clock::now(), next, end, session_.slow_frame());
   return time.end > time.next + 2.0 * kRamp;
 }
 
 bool Output::sound(Clock::time_point next, Clock::time_point end) {
   constexpr int kTrials = 3;
   constexpr int kFramesToSilence = 3;
-  const Clock::duration margin = to_duration(early(session_.slow_frame()));
-  const Clock::time_point latest = end - kFramesToSilence * margin;
+  constexpr double kReserve = 1.5;  // next frame over one that took too long
+  double slow_frame = session_.slow_frame();
+  const Clock::time_point latest = end - kFramesToSilence * to_duration(early(slow_frame));
   for (int trial = 0; trial < kTrials; ++trial) {
     const Clock::time_point now = Clock::now();
-    const SoundingTime time = times_of(now, next, end);
+    const SoundingTime time = times_of(now, next, end, slow_frame);
     if (time.end <= time.next + 2.0 * kRamp) {
       if (trial == 0) return true;
       break;
@@ -99,7 +100,10 @@ bool Output::sound(Clock::time_point next, Clock::time_point end) {
     if (!send_modulation(time, latest)) return false;
     if (!time.sounds) audible_from_ = now + to_duration(time.next);
     audible_until_ = now + to_duration(time.end - kRamp);
-    if (Clock::now() <= now + margin) return true;
+    const double taken = Seconds(Clock::now() - now).count();
+    if (taken <= early(slow_frame)) return true;
+    // the link is slower than when it was measured
+    slow_frame = kReserve * taken;
   }
   // output may be audible for too long: silence it now
   audible_until_ = {};

@@ -37,8 +37,8 @@ class Output {
   bool write(int segment, Transition transition, int samples, Prepare&& prepare);
   /// Makes output audible from `next` until `end`, with a ramp up if it was silent; returns before
   /// `next`. If it is too late for that, output stays silent. A modulation begins when it arrives:
-  /// if its arrival time is too uncertain, it is sent again, so that nothing is audible after
-  /// `end`. If it is too late for that too, the session fails.
+  /// if its arrival time is too uncertain, it is sent again with a larger margin, so that nothing
+  /// is audible after `end`. If it is too late for that too, the session fails.
   bool sound(Clock::time_point next, Clock::time_point end);
   /// Whether there is enough time left for sound().
   bool is_in_time(Clock::time_point next, Clock::time_point end) const;
@@ -52,7 +52,8 @@ class Output {
   double longest() const;
 
  private:
-  SoundingTime times_of(Clock::time_point now, Clock::time_point next, Clock::time_point end) const;
+  SoundingTime times_of(Clock::time_point now, Clock::time_point next, Clock::time_point end,
+                        double slow_frame) const;
   bool send_modulation(const SoundingTime& time,
                        Clock::time_point latest = Clock::time_point::max());
   double modulation_sample() const;  // [s]
