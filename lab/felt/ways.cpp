@@ -131,7 +131,7 @@ std::vector<Way> ways(const TransducerArray& array) {
               [](const Plan& plan, const TargetField&) { return with_shuffled_pressures(plan); }));
   all.push_back(
       changed("four circles", plain, true, [best](const Plan&, const TargetField& target) {
-        return circles_at_mass_centres(target, best.gain_law(), best.max_length(), 4, 1);
+        return circles_at_mass_centres(target, best.gain_law(), best.max_length(), 1);
       }));
   return all;
 }

@@ -114,7 +114,7 @@ def test_the_arrays_own_field_is_felt_more_like_the_target(prostm):
     lack = {}
     for preset in ("best", "felt"):
         lack[preset] = 1 - plan_of(prostm, "--array", "usx", "--preset", preset)["metrics"]["felt_skill"]
-    assert lack["felt"] < 0.75 * lack["best"]
+    assert lack["felt"] < 0.7 * lack["best"]
 
 
 @pytest.mark.parametrize("text, options, words", [

@@ -60,7 +60,7 @@ TEST(Rendering, FeltIsTruerAndStrongerThanBestInThePercept) {
   EXPECT_LE(felt.mean_power, 256.0);
 }
 
-TEST(Rendering, OneCircleHasTheMeanDistanceOfARing) {
+TEST(Rendering, OneCircleSuitsARingBetterThanOtherCircles) {
   const TargetField ring = fields::make(fields::Pattern::Ring, 50, kCells);
   Renderer renderer(usx_array(), ring);
   const Rendering circle = renderer.render(Way::Circle, ring);

@@ -166,7 +166,8 @@ const RunControl& control_of(const char* id) {
 
 // otherwise a page's change would be rejected
 TEST(Controls, EveryPresetIsAccepted) {
-  for (const Preset preset : {Preset::Paper, Preset::PaperValid, Preset::Fast, Preset::Felt}) {
+  for (const Preset preset :
+       {Preset::Paper, Preset::PaperValid, Preset::Best, Preset::Fast, Preset::Felt}) {
     LiveSettings s = small_settings();
     Pipeline pipeline = pipeline_of(s);
     control_of("preset").set(s, static_cast<double>(preset));

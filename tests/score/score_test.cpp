@@ -225,26 +225,42 @@ TEST(Controls, OfRandomCirclesAreTheMedianOfTheirDraws) {
   }
   std::ranges::sort(skills);
   const std::vector<Control> table = controls(target, kSigma, kGain, 0.14, nullptr, 3);
-  EXPECT_NEAR(table.back().metrics.skill_0, 0.5 * (skills[9] + skills[10]), 0.02);
+  EXPECT_NEAR(table.back().metrics.skill_0, 0.5 * (skills[9] + skills[10]), 1e-9);
 }
 
-TEST(Controls, OneCircleLiesAboutTheCentreOfMass) {
-  const TargetField target = fields::make(fields::Pattern::Ring, 50);
-  const Plan plan = circles_at_mass_centres(target, kGain, 0.1, 1, 1);
-  ASSERT_EQ(plan.paths.size(), 1U);
-  EXPECT_NEAR(plan.paths[0].length, 0.1, 1e-9);
-  Vec2 centre = Vec2::Zero(), mean = Vec2::Zero();
-  double mass = 0.0;
+TEST(Controls, OneCircleHasTheMeanDistanceOfThePressure) {
+  // a ring of single cells about the middle of a cell, so of a known centre and distance
+  constexpr double kRadius = 0.02, kCell = 0.5e-3;
+  TargetField target;
+  target.resize(101, 101);
+  target.cell = kCell;
+  std::fill(target.skin.begin(), target.skin.end(), std::uint8_t{1});
+  const Vec2 middle = target.position(50, 50);
   for (int row = 0; row < target.rows; ++row) {
     for (int col = 0; col < target.cols; ++col) {
-      const double p = target.pressure[target.index(row, col)];
-      centre += p * target.position(row, col);
-      mass += p;
+      const double distance = (target.position(row, col) - middle).norm();
+      target.pressure[target.index(row, col)] =
+          std::abs(distance - kRadius) < 0.9 * kCell ? 3.0 : 0.0;
     }
   }
-  for (const Vec2& point : plan.paths[0].points)
-    mean += point / static_cast<double>(plan.paths[0].points.size());
-  EXPECT_LT((mean - centre / mass).norm(), 1e-3);  // the weakest hundredth is left out
+  const auto circle_of = [&](double least_length, double most_length) {
+    const Plan plan = circle_at_mean_distance(target, kGain, least_length, most_length);
+    EXPECT_EQ(plan.paths.size(), 1U);
+    return plan.paths.at(0);
+  };
+  const FocalPath circle = circle_of(0.01, 1.0);
+  Vec2 centre = Vec2::Zero();
+  for (const Vec2& point : circle.points)
+    centre += point / static_cast<double>(circle.points.size());
+  EXPECT_LT((centre - middle).norm(), 1e-9);
+  EXPECT_NEAR(circle.length, 2.0 * kPi * kRadius, 0.01 * circle.length);
+  EXPECT_DOUBLE_EQ(circle.pressure[0], 3.0 * kGain.of(circle.period));
+  EXPECT_NEAR(circle_of(0.01, 0.1).length, 0.1, 1e-12);
+  EXPECT_NEAR(circle_of(0.2, 1.0).length, 0.2, 1e-12);
+  std::fill(target.pressure.begin(), target.pressure.end(), 0.0);
+  EXPECT_TRUE(circle_at_mean_distance(target, kGain, 0.01, 1.0).empty());
+  Random random(1);
+  EXPECT_TRUE(random_circles(target, kSigma, kGain, 0.14, random).empty());
 }
 
 TEST(Controls, ReportTheProgressAfterEachField) {

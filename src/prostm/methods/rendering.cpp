@@ -40,27 +40,8 @@ AmSettings felt_am(double focus_width) {
   settings.foci = 6;
   settings.sigma = 16e-3;
   settings.felt_weight = 1.0;
-  settings.widths = {{0.2}, {0.0}, {0.0}, {focus_width}};
+  settings.widths = {{0.2}, {0.0}, {0.0}, {focus_width}};  // the same everywhere
   return settings;
-}
-
-/// Mean distance of the pressure from its centre of mass [m].
-double mean_distance(const TargetField& target) {
-  const auto mean = [&](const auto& value) {
-    double sum = 0.0, whole = 0.0;
-    for (int row = 0; row < target.rows; ++row) {
-      for (int col = 0; col < target.cols; ++col) {
-        const std::size_t i = target.index(row, col);
-        if (target.skin[i] == 0) continue;
-        sum += target.pressure[i] * value(target.position(row, col));
-        whole += target.pressure[i];
-      }
-    }
-    return sum / whole;
-  };
-  const double x = mean([](const Vec2&at) { return at.x(); }),
-               y = mean([](const Vec2&at) { return at.y(); });
-  return mean([&](const Vec2& at) { return (at - Vec2(x, y)).norm(); });
 }
 
 /// @param focus_width of the array [m].
@@ -79,13 +60,11 @@ Plan plan_by(Way way, const TargetField& target, double focus_width, Random& ran
       return am({}, target);
     case Way::AmFelt:
       return am(felt_am(focus_width), target);
-    case Way::Circle: {
-      const double length =
-          std::clamp(2.0 * kPi * mean_distance(target), paper.least_length, paper.max_length());
-      return circles_at_mass_centres(target, paper.gain_law(), length, 1, 1);
-    }
+    case Way::Circle:
+      return circle_at_mean_distance(target, paper.gain_law(), paper.least_length,
+                                     paper.max_length());
     case Way::Circles:
-      return circles_at_mass_centres(target, paper.gain_law(), paper.max_length(), 4, 1);
+      return circles_at_mass_centres(target, paper.gain_law(), paper.max_length(), 1);
     case Way::RandomCircles:
       return random_circles(target, paper.sigma, paper.gain_law(), paper.max_length(), random);
     case Way::Flat:

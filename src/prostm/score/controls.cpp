@@ -41,6 +41,17 @@ void for_skin(const TargetField& target, double maximum, const Visit& visit) {
   }
 }
 
+/// Mean p*, over its maximum, of the points that are not weak.
+double mean_above_weak(const TargetField& target, double maximum) {
+  double sum = 0.0, cells = 0.0;
+  for_skin(target, maximum, [&](const Vec2&, double p) {
+    if (p < kWeak) return;
+    sum += p;
+    cells += 1.0;
+  });
+  return sum / cells;
+}
+
 Metrics flat_field(const TargetField& target, double maximum, const Scorer& scorer) {
   double sum = 0.0, cells = 0.0;
   for_skin(target, maximum, [&](const Vec2&, double p) {
@@ -161,10 +172,11 @@ struct SolvedCircles {
   std::vector<ClosestPoint> nearest;
 };
 
-SolvedCircles solved_circles(const TargetField& target, const std::vector<Vec2>& skin,
-                             double maximum, double sigma, const GainLaw& gain, double length,
-                             Random& random, WorkerPool* pool) {
-  SolvedCircles out = {circles_on(skin, length, 1.0 / gain.draw_rate, random), {}};
+SolvedCircles solved_circles(const TargetField& target, double sigma, const GainLaw& gain,
+                             double length, Random& random, WorkerPool* pool) {
+  const double maximum = max_pressure(target);
+  SolvedCircles out = {circles_on(skin_of(target, maximum), length, 1.0 / gain.draw_rate, random),
+                       {}};
   out.nearest = closest_points(target, out.plan, 0, pool);
   solve_pressures(normal_sums(target, maximum, sigma, gain, out.nearest, out.plan, pool), maximum,
                   out.plan);
@@ -224,34 +236,45 @@ Plan random_foci(const TargetField& target, const std::vector<Vec2>& skin, std::
 }  // namespace
 
 Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, double length,
-                             int count, std::uint64_t seed) {
+                             std::uint64_t seed) {
   Plan plan;
   const double maximum = max_pressure(target);
   if (!(maximum > 0.0)) return plan;
   planning::WeightedKMeans kmeans(target.size());
-  double sum = 0.0, cells = 0.0;
   for_skin(target, maximum, [&](const Vec2& x, double p) {
-    if (p < kWeak) return;
-    kmeans.add(x, p);
-    sum += p;
-    cells += 1.0;
+    if (p >= kWeak) kmeans.add(x, p);
   });
   planning::Clusters clusters;
-  kmeans.run(count, 100, seed, clusters);
+  kmeans.run(kCircles, 100, seed, clusters);
+  const double period = 1.0 / gain.draw_rate,
+               pressure = gain.of(period) * mean_above_weak(target, maximum) * maximum;
+  for (const Vec2& centre : clusters.centre)
+    plan.paths.push_back(circle(centre, length, period, pressure));
+  return plan;
+}
+
+Plan circle_at_mean_distance(const TargetField& target, const GainLaw& gain, double least_length,
+                             double most_length) {
+  const double maximum = max_pressure(target);
+  if (!(maximum > 0.0)) return {};
+  const Vec2 centre = centre_of_mass(target, maximum);
+  double moment = 0.0, mass = 0.0;
+  for_skin(target, maximum, [&](const Vec2& x, double p) {
+    moment += p * (x - centre).norm();
+    mass += p;
+  });
+  const double length = std::clamp(2.0 * kPi * moment / mass, least_length, most_length);
   const double period = 1.0 / gain.draw_rate;
-  for (const Vec2& centre : clusters.centre) {
-    plan.paths.push_back(circle(centre, length, period, gain.of(period) * sum / cells * maximum));
-  }
+  Plan plan;
+  plan.paths.push_back(
+      circle(centre, length, period, gain.of(period) * mean_above_weak(target, maximum) * maximum));
   return plan;
 }
 
 Plan random_circles(const TargetField& target, double sigma, const GainLaw& gain, double length,
                     Random& random) {
-  const double maximum = max_pressure(target);
-  if (!(maximum > 0.0)) return {};
-  return solved_circles(target, skin_of(target, maximum), maximum, sigma, gain, length, random,
-                        nullptr)
-      .plan;
+  if (!(max_pressure(target) > 0.0)) return {};
+  return solved_circles(target, sigma, gain, length, random, nullptr).plan;
 }
 
 namespace {
@@ -275,15 +298,14 @@ std::vector<Control> controls_by(WorkerPool* pool, const TargetField& target, do
   std::vector<Control> table;
   table.push_back({"flat field", flat_field(target, maximum, scorer)});
   ++done;
-  const Plan circles = circles_at_mass_centres(target, gain, length, kCircles, seed);
+  const Plan circles = circles_at_mass_centres(target, gain, length, seed);
   table.push_back({"four circles at the mass centres", score(circles)});
 
   const std::vector<Vec2> skin = skin_of(target, maximum);
   Random random(seed);
   std::vector<Metrics> draws;
   for (int draw = 0; draw < kDraws; ++draw) {
-    const auto [plan, nearest] =
-        solved_circles(target, skin, maximum, sigma, gain, length, random, pool);
+    const auto [plan, nearest] = solved_circles(target, sigma, gain, length, random, pool);
     const SegmentPressures solved = own_pressures(plan);
     draws.push_back(scored(scorer.plan(plan, 0, sigma, gain, nearest, &solved)));
   }

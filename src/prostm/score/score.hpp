@@ -67,10 +67,15 @@ struct Control {
   Metrics metrics;
 };
 
-/// Returns `count` circles like those of the control "four circles at the mass centres" of
-/// controls(); an empty plan for a target without pressure.
+/// Returns the circles of the control "four circles at the mass centres" of controls(); an empty
+/// plan for a target without pressure.
 Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, double length,
-                             int count, std::uint64_t seed);
+                             std::uint64_t seed);
+/// Returns one circle about the centre of mass. Its radius is the mean distance of the pressure
+/// from there, within the bounds of its length [m]; its pressure is that of
+/// circles_at_mass_centres(). An empty plan for a target without pressure.
+Plan circle_at_mean_distance(const TargetField& target, const GainLaw& gain, double least_length,
+                             double most_length);
 /// Returns one draw of the control "random circles, solved pressures"; an empty plan for a target
 /// without pressure.
 Plan random_circles(const TargetField& target, double sigma, const GainLaw& gain, double length,
