@@ -13,7 +13,6 @@
 #include "planner/contenders.hpp"
 #include "planner/nlopt_baseline.hpp"
 #include "planner/on_skin.hpp"
-#include "planner/picture.hpp"
 #include "planner/power.hpp"
 #include "planner/quality.hpp"
 #include "planner/scaling.hpp"
@@ -29,15 +28,14 @@ namespace prostm::bench {
 namespace {
 
 struct Options {
-  std::string vectors, figure, scaling_figure, bending_figure;
+  std::string vectors, scaling_figure, bending_figure;
   QualityOptions quality;
   std::vector<std::string> files;
 };
 
 std::vector<Row> measure_all(const Options& options) {
   if (!options.vectors.empty()) limit_vectors(options.vectors);
-  for (const std::string& figure :
-       {options.figure, options.scaling_figure, options.bending_figure}) {
+  for (const std::string& figure : {options.scaling_figure, options.bending_figure}) {
     if (!figure.empty()) check_figure(figure);
   }
   std::vector<Sequence> sequences;
@@ -67,7 +65,6 @@ std::vector<Row> measure_all(const Options& options) {
   measure_bending(options.bending_figure, rows);
   measure_power(std::min(options.quality.frames, 10), rows);
   measure_scaling(options.scaling_figure, rows);
-  if (!options.figure.empty()) draw_gallery_picture(options.figure);
   return rows;
 }
 
@@ -85,7 +82,6 @@ int main(int argc, char** argv) {
                  "seeds of the textbook planner; the median counts", 1, 1000);
   program.option("--vectors", options.vectors,
                  "best vector instructions to use: AVX2, SSE4, …, none");
-  program.option("--figure", options.figure, "draw the gallery; .png, .svg or .pdf");
   program.option("--scaling-figure", options.scaling_figure, "draw time against size");
   program.option("--bending-figure", options.bending_figure, "draw error against corners");
   program.option("FIELDS", options.files,

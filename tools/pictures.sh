@@ -16,9 +16,9 @@ for scene in one-plume four-plumes; do
   "$prostm" capture --scene $scene --hand study --frames 120 --out $scene.h5
 done
 "$prostm" plan four-plumes.h5 --frame 100 --preset paper --figure "$root/docs/pictures/plan.png"
-"$root/build/release/planner_bench" --frames 2 --seeds 1 --figure "$root/docs/pictures/gallery.png" \
-  --bending-figure "$root/docs/pictures/bending.png"
+"$root/build/release/planner_bench" --frames 2 --seeds 1 --bending-figure "$root/docs/pictures/bending.png"
 "$root/build/release/am_bench" --frames 2 --figure "$root/docs/pictures/am.png" one-plume.h5 four-plumes.h5
 "$root/build/release/skin_lab" --figures "$root/docs/pictures"
 "$root/build/release/plumes_lab" --curves "$root/docs/pictures/refinement.png"
-"$root/build/release/methods_lab" --frames 1 --figure "$root/docs/pictures/methods.png"
+"$root/build/release/methods_lab" --frames 1 --figure "$root/docs/pictures/methods.png" \
+  --gallery "$root/docs/pictures/gallery.png"

@@ -48,6 +48,12 @@ TEST(DrawGallery, ShowsEveryPartOfItsInput) {
   changed[2].plans[1].rendered.assign(changed[2].target.size(), 0.0);
   EXPECT_FALSE(bytes_of(changed) == whole);
   changed = fields;
+  changed[1].plans[1].second_caption = "felt";
+  const std::string captioned = bytes_of(changed);
+  EXPECT_FALSE(captioned == whole);
+  changed[1].plans[1].second_caption = "not felt";
+  EXPECT_FALSE(bytes_of(changed) == captioned);
+  changed = fields;
   changed[0].name = "another";
   EXPECT_FALSE(bytes_of(changed) == whole);
 }

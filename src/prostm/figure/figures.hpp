@@ -42,6 +42,7 @@ struct GalleryPlan {
   Plan plan;
   std::vector<double> rendered;  ///< Eq. (1), rows·cols of the target
   Metrics metrics;
+  std::string second_caption = {};  ///< a line under the metrics
 };
 /// A target and each planner's plan of it.
 struct GalleryField {

@@ -19,7 +19,7 @@ using figure::Panel;
 // the page in points
 constexpr double kPanel = 158.0, kPanelGap = 7.0, kFieldGap = 34.0;
 constexpr double kMargin = 34.0, kTop = 112.0, kAbove = 40.0, kBelow = 30.0, kRowGap = 8.0,
-                 kNote = 18.0;
+                 kNote = 18.0, kSecond = 14.0;
 constexpr double kBar = 84.0;  // room for the colour bar on the right
 constexpr double kCaption = 10.5;
 
@@ -62,6 +62,11 @@ void write_metrics(Canvas& canvas, const Box& box, const Metrics& m, GalleryCapt
       {.size = kCaption, .align = Align::Centre, .bold = is_best});
 }
 
+void write_second_caption(Canvas& canvas, const Box& box, const std::string& caption) {
+  canvas.text(Vec2(box.x + 0.5 * box.width, box.y + box.height + 15.0 + kSecond), caption,
+              {.size = kCaption, .align = Align::Centre});
+}
+
 /// Draws one field: its target, then its plans, from `corner` to the right.
 void draw_field(Canvas& canvas, const GalleryField& field, GalleryCaption caption,
                 const Vec2& corner) {
@@ -80,6 +85,7 @@ void draw_field(Canvas& canvas, const GalleryField& field, GalleryCaption captio
       write_metrics(canvas, panel.box(), plan->metrics, caption,
                     caption == GalleryCaption::Skill && field.plans.size() > 1 &&
                         plan->metrics.rmse == least);
+      write_second_caption(canvas, panel.box(), plan->second_caption);
     } else {
       draw_scale(canvas, panel);
     }
@@ -110,7 +116,11 @@ void draw_gallery(const GalleryPage& page, const std::vector<GalleryField>& fiel
   const double field_width =
       static_cast<double>(fields.front().plans.size() + 1) * (kPanel + kPanelGap) - kPanelGap;
   // all panels are squares; fields keep their aspect ratio within them
-  const double row_height = kAbove + kPanel + kBelow + kRowGap;
+  const bool has_second = std::ranges::any_of(fields, [](const GalleryField& field) {
+    return std::ranges::any_of(
+        field.plans, [](const GalleryPlan& plan) { return !plan.second_caption.empty(); });
+  });
+  const double row_height = kAbove + kPanel + kBelow + kRowGap + (has_second ? kSecond : 0.0);
   const double width = kMargin + static_cast<double>(in_row) * (field_width + kFieldGap) -
                        kFieldGap + kBar + kMargin;
   const double height = top - kAbove + static_cast<double>(rows) * row_height;
