@@ -132,6 +132,13 @@ Judged Judge::judge(const Plan& plan, const TargetField& target, std::uint64_t s
   out.strongest = *std::ranges::max_element(out.percept);
   for (std::size_t r = 0; r < kReadouts.size(); ++r)
     out.readout[r] = skill_of(target, map_of(kReadouts[r], motion, target));
+  const Vibration vibration = vibration_of(motion, pressed.loop());
+  for (std::size_t m = 0; m < kPerceptModels; ++m) {
+    const auto model = static_cast<PerceptModel>(m);
+    const PerceptEnergy energy = percept_energy(model, vibration);
+    out.model_skill[m] = skill_of(target, strength_map(model, energy));
+    out.model_strength[m] = strength_of(model, vibration.patch, energy);
+  }
   for (std::size_t s = 0; s < feel_.size(); ++s) {
     out.skin.push_back(
         s == 0 ? out.felt.skill_8

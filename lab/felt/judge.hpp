@@ -11,6 +11,7 @@
 #include "felt/played.hpp"
 #include "felt/skins.hpp"
 #include "felt/ways.hpp"
+#include "prostm/psychophysics/percept_model.hpp"
 #include "prostm/score/score.hpp"
 
 namespace prostm::bench {
@@ -25,6 +26,8 @@ struct Judged {
   std::vector<double> skin;                        ///< S_8.5 of √e on each skin
   std::vector<double> disturbed;  ///< the same under each disturbance; empty for a control
   int ghosts = 0, crossings = 0, long_paths = 0;
+  /// By each percept model on the first skin: S_8.5 of its map, and its strength in its unit.
+  std::array<double, kPerceptModels> model_skill{}, model_strength{};
   std::vector<double> percept;  ///< the map √e [m]
 };
 

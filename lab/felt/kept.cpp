@@ -86,7 +86,8 @@ Json to_json(const Judged& judged) {
           {"intensity", judged.intensity},        {"strongest", judged.strongest},
           {"readouts", judged.readout},           {"skins", judged.skin},
           {"disturbed", judged.disturbed},        {"ghosts", judged.ghosts},
-          {"crossings", judged.crossings},        {"long_paths", judged.long_paths}};
+          {"crossings", judged.crossings},        {"long_paths", judged.long_paths},
+          {"model_skill", judged.model_skill},    {"model_strength", judged.model_strength}};
 }
 
 Judged judged_from_json(const nlohmann::json& one) {
@@ -101,6 +102,8 @@ Judged judged_from_json(const nlohmann::json& one) {
   one.at("ghosts").get_to(out.ghosts);
   one.at("crossings").get_to(out.crossings);
   one.at("long_paths").get_to(out.long_paths);
+  one.at("model_skill").get_to(out.model_skill);
+  one.at("model_strength").get_to(out.model_strength);
   return out;
 }
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "prostm/plan/plan_settings.hpp"
+
 namespace prostm::bench {
 namespace {
 
@@ -123,6 +125,27 @@ void print_skins(const JudgedSet& set) {
   });
 }
 
+/// Prints shape and strength by each percept model and control of the published experiments: the
+/// lack and the ratio of strengths to those of the first way, and how much more (P25) is, with the
+/// default weight.
+void print_models(const JudgedSet& set) {
+  const double weight = PlanSettings().strength_weight;
+  fmt::print(
+      "\n{}: S_8.5 by each percept model, with the strength over that of {}, and the cost "
+      "above it\n",
+      set.name, set.ways[0]);
+  std::vector<std::string> names(kNames<PerceptModel>.begin(), kNames<PerceptModel>.end());
+  print_columns(set, names, [&](std::size_t w, std::size_t m) {
+    const auto shape = [m](const Judged& j) { return j.model_skill[m]; };
+    const auto strength = [m](const Judged& j) { return std::log(j.model_strength[m]); };
+    const double more = mean(each(set.results[w], shape)) - mean(each(set.results[0], shape)),
+                 louder =
+                     mean(each(set.results[w], strength)) - mean(each(set.results[0], strength));
+    return fmt::format("{:.3f} {:.2f} {:+.3f}", mean(each(set.results[w], shape)), std::exp(louder),
+                       -more - weight * louder);
+  });
+}
+
 void print_disturbances(const JudgedSet& set) {
   if (set.disturbances.empty()) return;
   fmt::print(
@@ -183,6 +206,7 @@ void print_tables(const JudgedSet& set) {
   print_strength(set);
   print_readouts(set);
   print_skins(set);
+  print_models(set);
   print_disturbances(set);
 }
 

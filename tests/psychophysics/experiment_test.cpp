@@ -126,6 +126,8 @@ TEST(Losses, APaperWeighsOne) {
   EXPECT_NEAR(papers.front().loss, 2.0, 1e-12);  // three cells, two of loss 3
   EXPECT_NEAR(sum_of(papers, ExperimentSet::Fit), 2.0, 1e-12);
   EXPECT_EQ(sum_of(papers, ExperimentSet::HeldOut), 0.0);
+  EXPECT_NEAR(sum_without(papers, "no paper"), 2.0, 1e-12);
+  EXPECT_NEAR(sum_without(papers, papers[0].paper_id), 2.0 - papers[0].loss, 1e-12);
 }
 
 TEST(Predictions, AForceThresholdIsProportionalToTheThreshold) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "common.hpp"
 #include "options.hpp"
@@ -276,8 +277,37 @@ Chosen fitted_experiments(const std::string& without) {
   return out;
 }
 
+/// Leaves out each paper in turn, and prints the observer, fitted without it, that predicts the
+/// others best. @param fitted_without the observers for each paper of the fitted set.
+Json print_judges(std::FILE* out, Laboratory& laboratory, Progress& progress,
+                  const std::map<std::string, std::vector<FittedObserver>>& fitted_without) {
+  Chosen all;
+  for (const Experiment& one : published_experiments()) all.push_back(&one);
+  const std::vector<Column> frozen = predicted_columns(laboratory, all, frozen_observers());
+  Json rows = Json::array();
+  progress.clear();
+  fmt::print(out,
+             "\nWithout each paper, the observer that predicts the others best, and its loss\n");
+  for (const PaperLoss& paper : paper_losses(frozen.front().experiments)) {
+    const std::string& left = paper.paper_id;
+    const auto found = fitted_without.find(left);
+    const std::vector<Column> columns =
+        found == fitted_without.end() ? frozen : predicted_columns(laboratory, all, found->second);
+    progress.clear();
+    const auto loss_of = [&](const Column& column) {
+      return sum_without(paper_losses(column.experiments), left);
+    };
+    const Column& best = *std::ranges::min_element(columns, {}, loss_of);
+    const double loss = loss_of(best), guess = loss_of(columns.front());
+    fmt::print(out, "  {:<12} {:<26} {:.2f}, a guess {:.2f}\n", left, best.name, loss, guess);
+    rows.push_back({{"without", left}, {"observer", best.name}, {"loss", loss}, {"guess", guess}});
+  }
+  return rows;
+}
+
 /// Fits each observer without each paper of the fitted set, and prints the parameters that are
-/// outside their ranges then, or that nothing determines any more.
+/// outside their ranges then, or that nothing determines any more. If all observers are chosen,
+/// also prints which of them predicts best without each paper.
 int leave_one_out(const ExperimentsOptionsGiven& options, Laboratory& laboratory,
                   Progress& progress) {
   std::FILE* out = prose(options.json);
@@ -285,6 +315,7 @@ int leave_one_out(const ExperimentsOptionsGiven& options, Laboratory& laboratory
   std::vector<std::string> papers;
   for (const Experiment* one : fitted_experiments(""))
     if (papers.empty() || papers.back() != one->paper_id) papers.push_back(one->paper_id);
+  std::map<std::string, std::vector<FittedObserver>> fitted_without;
   for (const FittedObserver& frozen : chosen_frozen(options)) {
     for (const std::string& paper : papers) {
       const FittedObserver of =
@@ -305,9 +336,13 @@ int leave_one_out(const ExperimentsOptionsGiven& options, Laboratory& laboratory
           fmt::print(out, " {} moves to {:.3g};", parameter.name, value);
       }
       fmt::print(out, " loss {:.2f}\n", of.loss);
+      fitted_without[paper].push_back(of);
     }
   }
-  write_json(options.json, Json{{"leave_one_out", rows}});
+  Json document = {{"leave_one_out", rows}};
+  if (options.model.empty() && options.readout.empty())
+    document["judges"] = print_judges(out, laboratory, progress, fitted_without);
+  write_json(options.json, document);
   say_written(out, options.json);
   return 0;
 }

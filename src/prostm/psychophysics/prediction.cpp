@@ -244,4 +244,10 @@ double sum_of(std::span<const PaperLoss> papers, ExperimentSet set) {
   return sum;
 }
 
+double sum_without(std::span<const PaperLoss> papers, std::string_view paper_id) {
+  double sum = 0.0;
+  for (const PaperLoss& paper : papers) sum += paper.paper_id == paper_id ? 0.0 : paper.loss;
+  return sum;
+}
+
 }  // namespace prostm

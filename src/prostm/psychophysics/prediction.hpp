@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "prostm/psychophysics/experiment.hpp"
@@ -83,5 +84,7 @@ struct PaperLoss {
 std::vector<PaperLoss> paper_losses(std::span<const PredictedExperiment> experiments);
 /// Returns the sum of the losses of a set's papers, (X16).
 double sum_of(std::span<const PaperLoss> papers, ExperimentSet set);
+/// Returns the sum of the losses of all papers but one.
+double sum_without(std::span<const PaperLoss> papers, std::string_view paper_id);
 
 }  // namespace prostm
