@@ -66,9 +66,11 @@ void measure_plans(int frames, bool warm, bool points, std::vector<Row>& rows) {
 }
 
 /// Time of plans of preset felt for four plumes, and of those of preset best in turn with them.
-void measure_preset(int frames, bool warm, std::vector<Row>& rows) {
+/// @param budget of preset felt [s].
+void measure_preset(int frames, bool warm, double budget, std::vector<Row>& rows) {
   PlanSettings chosen = settings_of(0.0, false);
   chosen.preset = Preset::Felt;
+  chosen.budget = budget;
   Timed best(settings_of(0.0, false), warm), felt(chosen, warm);
   Distribution times, best_times;
   for (int round = 0; round < 2; ++round) {
@@ -81,7 +83,9 @@ void measure_preset(int frames, bool warm, std::vector<Row>& rows) {
       times.add(with);
     }
   }
-  rows.push_back({fmt::format("felt/preset felt, {}", warm ? "warm" : "cold"), "ms",
+  const std::string limit =
+      budget > 0.0 ? fmt::format("budget of {:.0f} ms", 1e3 * budget) : "no budget";
+  rows.push_back({fmt::format("felt/preset felt, {}, {}", warm ? "warm" : "cold", limit), "ms",
                   times.summary(), "preset best", best_times.summary().p50});
 }
 
@@ -168,7 +172,10 @@ int main(int argc, char** argv) {
     std::vector<Row> rows;
     measure_evaluations(rows);
     for (const bool warm : {false, true}) measure_plans(frames, warm, false, rows);
-    for (const bool warm : {false, true}) measure_preset(100, warm, rows);
+    for (const bool warm : {false, true}) {
+      for (const double budget : {10e-3, 20e-3}) measure_preset(100, warm, budget, rows);
+      measure_preset(std::min(frames, 12), warm, 0.0, rows);
+    }
     measure_plans(std::min(frames, 6), false, true, rows);
     return rows;
   });

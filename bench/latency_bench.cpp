@@ -40,7 +40,7 @@ Arrangement ours(const Options& given, SwitchAt switch_at) {
   a.name = "switch " + std::string(name_of(switch_at));
   a.settings.scene = given.scene;
   a.settings.emit.switch_at = switch_at;
-  a.settings.plan.budget = kLiveBudget;
+  set_live_budget(a.settings);
   a.options.seconds = given.seconds;
   return a;
 }

@@ -85,7 +85,7 @@ struct Measured {
 PipelineSettings settings_of(const Options& given) {
   PipelineSettings s;
   s.scene = given.scene;
-  s.plan.budget = kLiveBudget;
+  set_live_budget(s);
   return s;
 }
 

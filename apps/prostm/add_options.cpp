@@ -57,7 +57,7 @@ void add_common(Command command, CommonOptions& o) {
   add_name(command, "--preset", o.preset, preset_choices());
   command.add_option("--paths", o.paths, "number of focal points, 1 to 8");
   command.add_option("--budget-ms", o.budget_ms,
-                     "time budget for each plan of preset best; 0: a fixed amount of work");
+                     "time budget for each plan of preset best or felt; 0: a fixed amount of work");
   add_name(command, "--method", o.method,
            "pro-stm (default): paths, or am: foci that stand still, modulated (docs/guides/am.md)");
 }

@@ -92,7 +92,7 @@ TEST_P(TrackerLoss, TheOutputFadesWithin50MillisecondsAndComesBackWithTheHand) {
   PipelineSettings settings;
   settings.method = GetParam();
   settings.fluid.cells = 32;
-  settings.plan.budget = kLiveBudget;
+  set_live_budget(settings);
   settings.scripted_hand.still = true;
   settings.track.freeze_time = 0.1;
   settings.devices.of<SimulatedArraySettings>().history = 30.0;

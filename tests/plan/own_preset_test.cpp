@@ -15,9 +15,9 @@ using testing::HasSubstr;
 constexpr PresetTraits kThrifty{.name = "thrifty",
                                 .title = "Thrifty",
                                 .search = PathSearch::Short,
-                                .takes_budget = true,
                                 .moves_fit_samples = true,
-                                .halves_segments = true};
+                                .halves_segments = true,
+                                .live_budget = 2e-3};
 
 PlanSettings with(const PresetTraits& traits) {
   PlanSettings settings;
@@ -59,7 +59,7 @@ TEST(OwnPreset, AcceptsTheSettingsOfItsTraits) {
     validate(settings);
     ADD_FAILURE() << "a budget was accepted";
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), HasSubstr("a budget is for preset best, not plain"));
+    EXPECT_THAT(error.what(), HasSubstr("a budget is for presets best and felt, not plain"));
   }
 }
 
@@ -76,7 +76,8 @@ TEST(PlanSettings, RejectPointsMovedByThePerceptWithABudget) {
 }
 
 TEST(Presets, AreListedByTheirTraits) {
-  EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.takes_budget; }), "preset best");
+  EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.takes_budget(); }),
+            "presets best and felt");
   EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.is_fitted(); }),
             "presets best, fast, and felt");
   EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.takes_felt_weight(); }),

@@ -37,7 +37,7 @@ PipelineSettings small_settings() {
   PipelineSettings s;
   s.fluid.cells = 32;
   s.scripted_hand.still = true;
-  s.plan.budget = kLiveBudget;
+  set_live_budget(s);
   return s;
 }
 

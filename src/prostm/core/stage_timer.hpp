@@ -1,6 +1,7 @@
 #pragma once
 /// The clock of all stages: the current time, and the duration of work.
 
+#include <algorithm>
 #include <chrono>
 
 namespace prostm {
@@ -29,6 +30,13 @@ class StageTimer {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+/// Returns a running mean of durations, updated by one. A duration may include an interruption, so
+/// it is clamped to 0.5 to 2 times the mean.
+inline double updated_mean(double mean, double duration) {
+  constexpr double kLearning = 0.2;
+  return mean + kLearning * (std::clamp(duration, 0.5 * mean, 2.0 * mean) - mean);
+}
 
 /// A time on a timer; without a timer it never passes.
 struct Deadline {

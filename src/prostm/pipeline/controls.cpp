@@ -99,11 +99,11 @@ bool has_source(const LiveSettings& s, std::size_t place) {
 
 // ---- setters shared by controls ----
 
-/// Sets the preset. In real time, a preset with a time budget gets a share of an update.
+/// Sets the preset, and its time budget for real time.
 void set_preset(LiveSettings& s, double value) {
   PlanSettings& plan = s.pipeline.plan;
   plan.preset = static_cast<Preset>(value);
-  plan.budget = plan.traits().takes_budget ? kLiveBudget : 0.0;
+  plan.budget = plan.traits().live_budget;
 }
 
 void set_paths(LiveSettings& s, double value) {

@@ -63,9 +63,8 @@ double PipelineSettings::sigma() const {
 }
 
 void set_live_budget(PipelineSettings& settings) {
-  const bool takes_budget =
-      settings.method == Method::ProStm && settings.plan.traits().takes_budget;
-  if (takes_budget && settings.plan.budget == 0.0) settings.plan.budget = kLiveBudget;
+  if (settings.method == Method::ProStm && settings.plan.budget == 0.0)
+    settings.plan.budget = settings.plan.traits().live_budget;
 }
 
 PlanSettings playable_plan_settings(const PipelineSettings& settings, double emission_rate) {

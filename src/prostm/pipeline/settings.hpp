@@ -22,8 +22,6 @@
 
 namespace prostm {
 
-inline constexpr double kLiveBudget = 2e-3;  ///< time for a plan of preset best in real time [s]
-
 struct PipelineSettings {
   std::string world = "smoke";      ///< name of the world, see world_kinds()
   std::string scene = "one-plume";  ///< name of a scene of the world
@@ -79,8 +77,8 @@ struct PipelineSettings {
   void visit(SettingsWriter& v);
 };
 
-/// Sets the time budget of preset best for real time, unless a budget was chosen: the planner then
-/// gets a share of an update instead of a number of evaluations.
+/// Sets the preset's time budget for real time, unless a budget was chosen: the planner then gets a
+/// share of an update instead of a number of evaluations.
 void set_live_budget(PipelineSettings& settings);
 
 /// The planner's settings, limited to what an emission at this rate can play, (P18).

@@ -33,7 +33,8 @@ void list_fit(Settings& s, Visitor& v) {
   v.field({"fit_starts", "", 1, 10'000, "sets of paths tried if there is no previous plan"},
           s.fit_starts);
   v.field({"fit_kicks", "", 0, 100'000, "attempts to re-initialise one or two paths"}, s.fit_kicks);
-  v.field({"budget", "s", 0, 60, "time after which best tries nothing more; 0: only counts apply"},
+  v.field({"budget", "s", 0, 60,
+           "time after which best and felt try nothing more; 0: only counts apply"},
           s.budget);
   v.field({"full_scale_pressure", "", 0, 1e300,
            "rendered pressure at full output that best, "
@@ -114,10 +115,10 @@ void validate(const PlanSettings& s) {
         "gain_from_skin replaces gain_exponent: with it, gain_exponent must be 0");
   }
   const PresetTraits& traits = s.traits();
-  if (s.budget > 0.0 && !traits.takes_budget) {
-    throw std::invalid_argument("a budget is for " +
-                                presets_with([](const PresetTraits& t) { return t.takes_budget; }) +
-                                ", not " + std::string(traits.name));
+  if (s.budget > 0.0 && !traits.takes_budget()) {
+    throw std::invalid_argument(
+        "a budget is for " + presets_with([](const PresetTraits& t) { return t.takes_budget(); }) +
+        ", not " + std::string(traits.name));
   }
   if (s.budget > 0.0 && s.felt_points) {
     throw std::invalid_argument(

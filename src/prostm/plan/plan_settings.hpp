@@ -52,8 +52,8 @@ struct PlanSettings {
   double fit_hysteresis = 0.03;  ///< share of the cost that a new set of paths must save
   int fit_starts = 4;            ///< sets of paths tried if there is no previous plan
   int fit_kicks = 8;             ///< attempts to re-initialise one or two paths
-  /// Time after which `best` tries nothing more [s]; 0: only the counts apply, and the same input
-  /// gives the same plan.
+  /// Time after which `best` and `felt` try nothing more [s]; 0: only the counts apply, and the
+  /// same input gives the same plan.
   double budget = 0.0;
   /// Rendered pressure at full output that presets best, fast and felt assume [unit of the target];
   /// 0: γ of the longest path times the frame's maximum.

@@ -23,14 +23,16 @@ struct PresetTraits {
   std::string_view title;  ///< on the page
   PathSearch search = PathSearch::Paper;
   bool makes_valid = false;         ///< repairs or drops invalid paths (paper's method only)
-  bool takes_budget = false;        ///< PlanSettings::budget bounds its time
   bool moves_fit_samples = false;   ///< moves fit_samples points of a path, not `samples`
   bool halves_segments = false;     ///< plans have two pieces for each segment that is moved
   bool chooses_by_percept = false;  ///< chooses number of paths and pressures by what is felt
+  double live_budget = 0.0;         ///< PlanSettings::budget in real time [s]; 0: it takes none
 
   /// Returns whether paths are fitted to the field: settings fit_… and felt_… apply, plans are
   /// always valid, and PlanSettings::widths is used if not empty.
   constexpr bool is_fitted() const { return search != PathSearch::Paper; }
+  /// Returns whether PlanSettings::budget bounds its time.
+  constexpr bool takes_budget() const { return live_budget > 0.0; }
   /// Returns whether PlanSettings::felt_weight applies.
   constexpr bool takes_felt_weight() const { return is_fitted() && !chooses_by_percept; }
 };
@@ -48,11 +50,15 @@ inline constexpr std::array<PresetTraits, 5> kPresetTraits = {{
     {.name = "best",
      .title = "Best",
      .search = PathSearch::Full,
-     .takes_budget = true,
      .moves_fit_samples = true,
-     .halves_segments = true},
+     .halves_segments = true,
+     .live_budget = 2e-3},
     {.name = "fast", .title = "Fast", .search = PathSearch::Short},
-    {.name = "felt", .title = "Felt", .search = PathSearch::Short, .chooses_by_percept = true},
+    {.name = "felt",
+     .title = "Felt",
+     .search = PathSearch::Short,
+     .chooses_by_percept = true,
+     .live_budget = 20e-3},
 }};
 
 inline constexpr Preset kDefaultPreset = Preset::Best;

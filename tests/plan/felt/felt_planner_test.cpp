@@ -27,6 +27,13 @@ PlanSettings felt(double strength_weight) {
   return settings;
 }
 
+/// The same, with time to compare all plans, but not to refine any.
+PlanSettings quickly_felt(double strength_weight) {
+  PlanSettings settings = felt(strength_weight);
+  settings.budget = 0.3;
+  return settings;
+}
+
 /// Returns the number of regions by merging the labels of neighbours until none differ.
 int merged_regions(const TargetField& field, double least) {
   std::vector<int> label(field.size());
@@ -162,6 +169,12 @@ Felt felt_of(const PlanSettings& settings) {
   return sum;
 }
 
+std::pair<Plan, PlanStats> planned(const PlanSettings& settings, const TargetField& field) {
+  std::pair<Plan, PlanStats> out;
+  Planner(settings, field.size()).plan(field, out.first, out.second);
+  return out;
+}
+
 TEST(FeltPreset, TradesShapeForStrength) {
   const Felt shape = felt_of(felt(0.0)), both = felt_of(felt(0.1)), strength = felt_of(felt(5.0));
   EXPECT_LE(shape.lack, both.lack * 1.02);
@@ -178,8 +191,24 @@ TEST(FeltPreset, IsFeltBetterThanPressuresOfTheField) {
   EXPECT_LT(felt_of(felt(0.1)).lack, 0.6 * felt_of(fast).lack);
 }
 
+TEST(FeltPreset, RefinesPlansIfThereIsTime) {
+  PlanSettings short_budget = felt(0.0), ample_budget = felt(0.0);
+  short_budget.budget = 1e-6;
+  ample_budget.budget = 60.0;
+  const TargetField field = fields::make(fields::Pattern::Letter, 40);
+  const auto [shortly, short_stats] = planned(short_budget, field);
+  const auto [fully, full_stats] = planned(felt(0.0), field);
+  const auto [amply, ample_stats] = planned(ample_budget, field);
+  EXPECT_LT(short_stats.cost_evaluations, full_stats.cost_evaluations);
+  ASSERT_NO_FATAL_FAILURE(test::expect_same_plan(fully, amply, 1.0));
+  const auto lack = [&](const Plan& plan) {
+    return felt_plan(plan, field, kSigma, felt_skins()).lack;
+  };
+  EXPECT_LT(lack(fully), 0.9 * lack(shortly));
+}
+
 TEST(FeltPreset, KeepsTheNumberOfPathsForASecond) {
-  Planner planner(felt(0.1), fields::kCells * fields::kCells);
+  Planner planner(quickly_felt(0.1), fields::kCells * fields::kCells);
   RegionCounter counter(fields::kCells * fields::kCells);
   std::size_t last = 0;
   int regions = 0;
@@ -256,7 +285,7 @@ TEST(FeltPreset, PlansForATargetThatStaysAreAlike) {
 // The first plan for another target reveals that it costs more; the second is made anew.
 TEST(FeltPreset, ChoosesAmongAllPlansAgainWhenItHasBecomeWorse) {
   Planner planner(felt(0.1), fields::kCells * fields::kCells);
-  const TargetField after = fields::make(fields::Pattern::FourPlumes, 10);
+  const TargetField after = fields::make(fields::Pattern::Noise, 10);
   Plan plan;
   PlanStats stats;
   planner.plan(fields::make(fields::Pattern::OnePlume, 10), plan, stats);

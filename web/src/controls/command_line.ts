@@ -17,19 +17,21 @@ export interface CommandLine {
   note: string;
 }
 
-// settings covered by those options, and the planning time, which a real-time run sets itself
+// settings covered by those options
 const kSaid = [
   "pipeline.scene", "fluid.cells", "pipeline.method", "plan.preset", "plan.paths", "am.foci", "emit.foci", "emit.switch_at",
 ];
-const kLiveBudget = "plan.budget = 0.002";
+// time budgets that a real-time run sets itself, by preset [s]
+const kLiveBudgets: Record<string, string> = { best: "0.002", felt: "0.02" };
 
 /// Whether the settings file holds anything that the options do not.
-function needsFile(settings: string): boolean {
+function needsFile(settings: string, preset: string): boolean {
   let group = "";
   for (const line of settings.split("\n")) {
-    const [key = ""] = line.split(" = ");
+    const [key = "", value] = line.split(" = ");
+    const name = `${group}.${key}`;
     if (line.startsWith("[")) group = line.slice(1, -1);
-    else if (key !== "" && !kSaid.includes(`${group}.${key}`) && `${group}.${line}` !== kLiveBudget) return true;
+    else if (key !== "" && !kSaid.includes(name) && (name !== "plan.budget" || value !== kLiveBudgets[preset])) return true;
   }
   return false;
 }
@@ -44,7 +46,8 @@ export function commandLine(state: State): CommandLine {
   const { base } = state.transport;
   if (kHands.includes(base)) parts.push(`--hand ${base}`);
   else notes.push(`Add --hand and ${base === "recording" ? "the recording's file" : "the tracker's address"}.`);
-  if (needsFile(state.settings)) {
+  const preset = state.controls.find((control) => control.id === "preset");
+  if (needsFile(state.settings, inWords(preset?.value ?? "best"))) {
     parts.push("--settings prostm.toml");
     notes.push("Some settings have no option: copy them as prostm.toml, too.");
   }

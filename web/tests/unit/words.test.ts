@@ -84,6 +84,15 @@ describe("the command line", () => {
     });
     expect(commandLine(stateWith([scene], { settings: "[pipeline]\nscene = \"one-plume\"\n\n[plan]\nbudget = 0.002\n" })).command).not.toContain("--settings");
   });
+  it("leaves out the time budget that a run in real time sets itself", () => {
+    const preset = { ...scene, id: "preset", label: "Preset" };
+    const made = (value: string, budget: number) =>
+      commandLine(stateWith([{ ...preset, value }], { settings: `[plan]\npreset = "${value}"\nbudget = ${budget}\n` })).command;
+    expect(made("felt", 0.02)).toBe("prostm run --view --preset felt --hand scripted");
+    expect(made("best", 0.002)).toBe("prostm run --view --preset best --hand scripted");
+    expect(made("best", 0.02)).toContain("--settings");
+    expect(made("felt", 0.002)).toContain("--settings");
+  });
   it("reports what else is needed", () => {
     const made = commandLine(stateWith([scene, { ...paths, enabled: false }], {
       settings: "[plan]\nspeed = 4\n", transport: { ...stateWith([]).transport, base: "recording" },

@@ -18,7 +18,6 @@ constexpr int kSpare = 2;             // evaluations kept in reserve, since thei
 constexpr int kLeastEvaluations = 4;  // least evaluations of a start that must be made
 // largest share of a budget for the finish, on finer cells or on those of the search
 constexpr double kFinishShare = 0.35, kSameShare = 0.15;
-constexpr double kLearning = 0.2;
 constexpr double kWarmShare = 0.5;  // largest share of a budget for the previous paths
 constexpr int kFewestStops = 14, kMoreStops = 7;
 
@@ -26,12 +25,6 @@ Vec2 centroid(const Loops& loops, int path) {
   Vec2 sum = Vec2::Zero();
   for (int i = 0; i < loops.samples; ++i) sum += loops.point(i, path);
   return sum / loops.samples;
-}
-
-/// Returns a running mean of times, updated by one. A time may include an interruption, so it is
-/// clamped to 0.5 to 2 times the mean.
-double updated_mean(double mean, double time) {
-  return mean + kLearning * (std::clamp(time, 0.5 * mean, 2.0 * mean) - mean);
 }
 
 /// Draws another path, with a preference for near ones; returns `first` if it is the only path.

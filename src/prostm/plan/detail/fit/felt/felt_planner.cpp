@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "prostm/plan/detail/fit/felt/plain_loops.hpp"
 #include "prostm/plan/detail/pressure_raster.hpp"
@@ -15,6 +17,8 @@ constexpr FeltEffort kRoughEffort = {8, 0.5F};  // descent of each plan that is 
 // descents of the chosen plan: points, then pressures, first of a new plan, then from the last one
 constexpr FeltEffort kMoving = {25, 0.5F}, kMoved = {12, 0.5F};
 constexpr FeltEffort kMovingOn = {8, 0.3F}, kMovedOn = {6, 0.5F};
+constexpr std::size_t kRefined = 2;   // candidates whose points and pressures are refined
+constexpr int kRefiningRounds = 4;    // rounds of moving points and mending paths
 constexpr int kPlansPerRival = 3;     // plans of a sequence for each comparison
 constexpr float kHysteresis = 0.04F;  // cost that another candidate must save
 constexpr float kLost = 0.05F;        // cost by which a sequence may exceed its least
@@ -55,9 +59,10 @@ LoopBounds loop_bounds(const PlanSettings& settings, const TargetField& target) 
           .width = kWidth * kMmPerMetre * settings.sigma_on(target)};
 }
 
-/// Returns the task of planning at most `paths` paths.
+/// Returns the task of planning at most `paths` paths, whose search is short enough for any budget.
 PatchTask with_paths(PatchTask task, int paths) {
   task.paths = paths;
+  task.budget = 0.0;
   return task;
 }
 
@@ -72,13 +77,17 @@ FeltPlanner::FeltPlanner(const PlanSettings& settings, std::size_t max_cells,
               FeltLoudness::Highest),
       fine_(step_settings(settings, false), fine_tuning(), {.tables = tables},
             FeltLoudness::Highest),
+      thorough_(step_settings(settings, true), {},
+                {.most_cells = kFinerFeltCells, .tables = tables}, FeltLoudness::Highest),
       regions_(max_cells) {
   const auto add = [&](int paths, Start start) {
     candidates_.push_back({FitPlanner(settings, max_cells), paths, start});
   };
-  for (int paths = 1; paths <= settings.paths; ++paths) add(paths, Start::Stops);
+  // a short budget compares only the first
+  for (int paths = settings.paths; paths >= 1; --paths) add(paths, Start::Stops);
   add(1, Start::Circle);
   add(1, Start::Line);
+  rated_.reserve(candidates_.size());
 }
 
 void FeltPlanner::reset() {
@@ -89,14 +98,15 @@ void FeltPlanner::reset() {
   plans_ = 0;
 }
 
-/// Returns (P25).
-float FeltPlanner::cost(Candidate& candidate) {
-  const FeltRating rating = candidate.fit.rate(rough_);
+/// Returns (P25), as felt on the cells and skins of `step`.
+float FeltPlanner::cost(Candidate& candidate, FeltStep& step) {
+  const FeltRating rating = candidate.fit.rate(step);
   return rating.lack - static_cast<float>(settings_.strength_weight) * std::log(rating.strength);
 }
 
 /// Makes a candidate's plan anew, up to its pressures on few cells. @return its cost.
 float FeltPlanner::plan_roughly(const PatchTask& task, Candidate& candidate, PlanStats& stats) {
+  const StageTimer all;
   if (candidate.start == Start::Stops) {
     candidate.fit.reset();
     candidate.fit.find(with_paths(task, candidate.paths), stats);
@@ -104,80 +114,120 @@ float FeltPlanner::plan_roughly(const PatchTask& task, Candidate& candidate, Pla
     loops_.samples = settings_.moved_samples();
     const auto set = candidate.start == Start::Circle ? start_circle : start_line;
     set(task.target, loop_bounds(settings_, task.target), loops_);
-    candidate.fit.find_from(loops_, task, stats);
+    candidate.fit.find_from(loops_, with_paths(task, candidate.paths), stats);
   }
   const StageTimer timer;
   rough_.set_target(task.target, task.maximum, candidate.fit.sigma());
   rough_.forget();
   candidate.fit.choose_felt(rough_, stats);
-  const float found = cost(candidate);
+  const float found = cost(candidate, rough_);
   stats.refine += timer.seconds();
+  times_.comparing = updated_mean(times_.comparing, all.seconds());
   return found;
 }
 
-/// Makes the plan of every candidate, and moves the points of the one that costs least. @param
-/// paths their number; 0: any. @return that candidate.
-std::size_t FeltPlanner::choose_among_all(const PatchTask& task, int paths, PlanStats& stats) {
-  std::size_t best = kNone;
-  float least = std::numeric_limits<float>::infinity();
+/// Makes the plans of the candidates, at least of one, and sets chosen_ to the one that costs
+/// least.
+/// @param paths their number; 0: any.
+void FeltPlanner::compare(const PatchTask& task, int paths, PlanStats& stats) {
+  rated_.clear();
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     if (candidates_[i].paths > task.paths || (paths > 0 && candidates_[i].paths != paths)) continue;
-    const float own = plan_roughly(task, candidates_[i], stats);
-    if (best != kNone && own >= least) continue;
-    least = own;
-    best = i;
+    if (!rated_.empty() && !has_time(task, times_.comparing + times_.ending)) break;
+    rated_.push_back({plan_roughly(task, candidates_[i], stats), i});
   }
+  std::ranges::sort(rated_, {}, [](const Rated& r) { return std::pair(r.cost, r.candidate); });
+  chosen_ = rated_.front().candidate;
   fine_.forget();
-  move_points(task, candidates_[best].fit, stats);
-  return best;
 }
 
-/// Moves the points of a plan, whose pressures fine_ then continues from.
-void FeltPlanner::move_points(const PatchTask& task, FitPlanner& fit, PlanStats& stats) {
+/// Moves the points of a plan, which thorough_ continues, and chooses its pressures, on all cells
+/// and skins. @param rounds number of repetitions. @return its cost then.
+float FeltPlanner::refine(const PatchTask& task, Candidate& candidate, int rounds,
+                          PlanStats& stats) {
   const StageTimer timer;
-  moving_.continue_from(fine_);
-  moving_.set_target(task.target, task.maximum, fit.sigma());
-  fit.move_felt(task, moving_, 1, stats);
-  fine_.continue_from(moving_);
+  thorough_.set_target(task.target, task.maximum, candidate.fit.sigma());
+  candidate.fit.move_felt(task, thorough_, rounds, stats);
+  candidate.fit.choose_felt(thorough_, stats);
+  const float refined = cost(candidate, thorough_);
   stats.refine += timer.seconds();
+  return refined;
 }
 
-/// Continues the last plan, unless another candidate, with which it is compared at some frames,
-/// costs less. @return the candidate.
-std::size_t FeltPlanner::continue_plan(const PatchTask& task, PlanStats& stats) {
-  std::size_t chosen = chosen_;
-  if (++plans_ % kPlansPerRival == 0 && count_.may_change()) {
-    do rival_ = (rival_ + 1) % candidates_.size();
-    while (rival_ == chosen_ || candidates_[rival_].paths > task.paths);
-    const float other = plan_roughly(task, candidates_[rival_], stats);
-    if (other < cost_ - kHysteresis) chosen = rival_;
+/// Refines the cheapest plans, and sets chosen_ to the one that costs least then. @return false if
+/// there is no time for any.
+bool FeltPlanner::refine_cheapest(const PatchTask& task, PlanStats& stats) {
+  float least = std::numeric_limits<float>::infinity();
+  for (const Rated& rated : std::span(rated_).first(std::min(kRefined, rated_.size()))) {
+    if (!has_time(task, times_.refining)) break;
+    const StageTimer timer;
+    thorough_.forget();
+    const float refined = refine(task, candidates_[rated.candidate], kRefiningRounds, stats);
+    times_.refining = updated_mean(times_.refining, timer.seconds());
+    if (refined >= least) continue;
+    least = refined;
+    chosen_ = rated.candidate;
+    fine_.continue_from(thorough_);
   }
-  Candidate& next = candidates_[chosen];
-  if (chosen == chosen_) {
+  return std::isfinite(least);
+}
+
+/// Continues the last plan, or another candidate's, with which it is compared at some frames, if
+/// that costs less.
+void FeltPlanner::continue_plan(const PatchTask& task, PlanStats& stats) {
+  const std::size_t last = chosen_;
+  if (++plans_ % kPlansPerRival == 0 && count_.may_change() &&
+      has_time(task, times_.comparing + times_.ending)) {
+    do rival_ = (rival_ + 1) % candidates_.size();
+    while (rival_ == last || candidates_[rival_].paths > task.paths);
+    const float other = plan_roughly(task, candidates_[rival_], stats);
+    if (other < cost_ - kHysteresis) chosen_ = rival_;
+  }
+  Candidate& next = candidates_[chosen_];
+  if (chosen_ == last) {
     next.fit.find(with_paths(task, next.paths), stats);
   } else {
     fine_.forget();
   }
-  move_points(task, next.fit, stats);
-  return chosen;
+  if (!has_time(task, times_.refining)) return end_quickly(task, stats);
+  thorough_.continue_from(fine_);
+  refine(task, next, 1, stats);
+  fine_.continue_from(thorough_);
+}
+
+/// Moves the points of the chosen plan on few cells, and chooses its pressures.
+void FeltPlanner::end_quickly(const PatchTask& task, PlanStats& stats) {
+  const StageTimer timer;
+  FitPlanner& fit = candidates_[chosen_].fit;
+  moving_.continue_from(fine_);
+  moving_.set_target(task.target, task.maximum, fit.sigma());
+  fit.move_felt(task, moving_, 1, stats);
+  fine_.continue_from(moving_);
+  fine_.set_target(task.target, task.maximum, fit.sigma());
+  fit.choose_felt(fine_, stats);
+  stats.refine += timer.seconds();
+  times_.ending = updated_mean(times_.ending, timer.seconds());
 }
 
 void FeltPlanner::plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats) {
+  timer_.restart();
   fine_.move(kMmPerMetre * (origin_ - task.target.origin));
   origin_ = task.target.origin;
   count_.begin(regions_.count(task.target, task.maximum), task.time);
   const bool follows = chosen_ != kNone && candidates_[chosen_].paths <= task.paths;
   const bool continues = follows && cost_ <= least_cost_ + kLost;
-  const int paths = follows && !count_.may_change() ? candidates_[chosen_].paths : 0;
-  chosen_ = continues ? continue_plan(task, stats) : choose_among_all(task, paths, stats);
+  if (continues) {
+    continue_plan(task, stats);
+  } else {
+    compare(task, follows && !count_.may_change() ? candidates_[chosen_].paths : 0, stats);
+    if (!refine_cheapest(task, stats)) end_quickly(task, stats);
+  }
   const StageTimer timer;
   Candidate& chosen = candidates_[chosen_];
-  fine_.set_target(task.target, task.maximum, chosen.fit.sigma());
-  chosen.fit.choose_felt(fine_, stats);
   chosen.fit.append(task, plan, stats);
   count_.take(chosen.paths);
   rough_.set_target(task.target, task.maximum, chosen.fit.sigma());
-  cost_ = cost(chosen);
+  cost_ = cost(chosen, rough_);
   least_cost_ = continues ? std::min(least_cost_, cost_) : cost_;
   stats.refine += timer.seconds();
 }

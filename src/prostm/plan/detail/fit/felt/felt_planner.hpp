@@ -15,7 +15,7 @@ namespace prostm::planning {
 
 /// Makes several plans, with every number of paths, and keeps the plan with the least cost (P25) of
 /// its percept. In a sequence, continues the last plan, and compares it with others by turns, or
-/// with all when it has become worse.
+/// with all when it has become worse. Within a time budget, it compares, and refines, fewer.
 class FeltPlanner : public PatchPlanner {
  public:
   /// @param tables shared by the planners of all patches.
@@ -34,21 +34,41 @@ class FeltPlanner : public PatchPlanner {
     Start start;
   };
 
+  /// A candidate with the cost of its plan.
+  struct Rated {
+    float cost;
+    std::size_t candidate;
+  };
+  /// Time of a step of planning: the mean of earlier ones [s].
+  struct StepTimes {
+    double comparing = 2e-3, refining = 0.4;  // of a candidate
+    double ending = 5e-3;                     // of the quick way to choose points and pressures
+  };
+
+  bool has_time(const PatchTask& task, double seconds) const {
+    return task.budget == 0.0 || timer_.seconds() + seconds <= task.budget;
+  }
+  float cost(Candidate& candidate, FeltStep& step);
   float plan_roughly(const PatchTask& task, Candidate& candidate, PlanStats& stats);
-  float cost(Candidate& candidate);
-  std::size_t choose_among_all(const PatchTask& task, int paths, PlanStats& stats);
-  std::size_t continue_plan(const PatchTask& task, PlanStats& stats);
-  void move_points(const PatchTask& task, FitPlanner& fit, PlanStats& stats);
+  void compare(const PatchTask& task, int paths, PlanStats& stats);
+  float refine(const PatchTask& task, Candidate& candidate, int rounds, PlanStats& stats);
+  bool refine_cheapest(const PatchTask& task, PlanStats& stats);
+  void continue_plan(const PatchTask& task, PlanStats& stats);
+  void end_quickly(const PatchTask& task, PlanStats& stats);
 
   const PlanSettings settings_;
   std::vector<Candidate> candidates_;
-  FeltStep rough_, moving_, fine_;  // for comparing plans, and for the chosen plan
+  // for comparing plans; for the chosen plan, quickly; for a refined plan
+  FeltStep rough_, moving_, fine_, thorough_;
   RegionCounter regions_;
   PathCount count_;
   std::size_t chosen_ = kNone, rival_ = 0;  // candidate of the last plan, and the last compared
   float cost_ = 0.0F, least_cost_ = 0.0F;   // of the last plan, and since all were compared
   int plans_ = 0;                           // since reset()
-  Vec2 origin_ = Vec2::Zero();              // of the last target [m]
+  std::vector<Rated> rated_;                // plans that are compared, the cheapest first
+  StageTimer timer_;                        // since the plan began
+  StepTimes times_;
+  Vec2 origin_ = Vec2::Zero();  // of the last target [m]
   Loops loops_;
 
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
