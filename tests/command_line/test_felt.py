@@ -45,6 +45,7 @@ def test_the_percept_chooses_nothing_by_default(prostm):
     assert "loop_ms" not in plan_of(prostm)
 
 
+@pytest.mark.long
 def test_the_preset_reports_what_it_chose(prostm, settings):
     text = prostm("plan", FIELD, "--preset", "felt").stdout
     plan = plan_of(prostm, "--preset", "felt")
@@ -89,6 +90,7 @@ def test_am_reports_it_too(prostm, settings):
 
 
 @pytest.mark.long
+@pytest.mark.long
 def test_with_an_array_the_verdict_is_about_the_felt_field(prostm):
     end = " (1 is perfect, 0 is no better than an even field)"
     metrics = plan_of(prostm, "--array", "usx", "--preset", "felt")["metrics"]
@@ -109,6 +111,7 @@ def test_a_pressure_field_that_loses_to_a_control_does_not_imply_that_the_felt_f
     assert warning.endswith(": its pressure hardly resembles the field")
 
 
+@pytest.mark.long
 @pytest.mark.long
 def test_the_arrays_own_field_is_felt_more_like_the_target(prostm):
     lack = {}

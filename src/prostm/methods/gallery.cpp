@@ -39,7 +39,8 @@ std::vector<GalleryTarget> render_gallery(const std::function<void(double)>& pro
   constexpr int kFrame = fields::kFrames / 2;
   Renderer renderer(usx_array(), fields::make(fields::kPatterns.front(), kFrame));
   for (const fields::Pattern pattern : fields::kPatterns) {
-    GalleryTarget& shown = out.emplace_back(to_string(pattern), fields::make(pattern, kFrame));
+    GalleryTarget& shown =
+        out.emplace_back(GalleryTarget{to_string(pattern), fields::make(pattern, kFrame), {}});
     for (std::size_t w = 0; w < kGalleryWays.size(); ++w)
       shown.renderings[w] = renderer.render(kGalleryWays[w], shown.target);
     progress(static_cast<double>(out.size()) / static_cast<double>(fields::kPatterns.size()));
@@ -50,7 +51,7 @@ std::vector<GalleryTarget> render_gallery(const std::function<void(double)>& pro
 void draw_gallery_of_ways(const std::vector<GalleryTarget>& targets, const std::string& path) {
   std::vector<GalleryField> fields;
   for (const GalleryTarget& of : targets) {
-    GalleryField& field = fields.emplace_back(heading(of.name), of.target);
+    GalleryField& field = fields.emplace_back(GalleryField{heading(of.name), of.target, {}});
     for (std::size_t w = 0; w < kGalleryWays.size(); ++w)
       field.plans.push_back(shown(kGalleryWays[w], of.renderings[w], of.target));
   }
