@@ -312,7 +312,7 @@ TEST(InStep, PhasesAreExactAfterAnySequenceOfPlans) {
       submit(player, plan.paths, plan.loop);
       player.play(rest);
       if (plan.loop == 0.0 || plan.paths.empty()) continue;
-      const std::int64_t n = std::llround(plan.loop * rate);
+      const auto n = static_cast<std::int64_t>(std::ceil(plan.loop * rate - 1e-6));
       const auto last = player.play(1);
       const auto first = last.first(4);
       const std::int64_t count = find_count(plan, n, first);

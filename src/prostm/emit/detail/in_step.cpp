@@ -18,7 +18,9 @@ bool rests(const LiftedPath& path, double step) {
 InStep shared_loop(const LiftedPlan& plan, double sample_rate, double max_step) {
   InStep loop;
   if (plan.loop <= 0.0) return loop;
-  loop.base = std::max<std::int64_t>(1, std::llround(plan.loop * sample_rate));
+  // rounded up, so that no path becomes faster than planned
+  loop.base =
+      static_cast<std::int64_t>(std::max(1.0, std::ceil(plan.loop * sample_rate - kRounding)));
   double loops = 1.0;
   for (const LiftedPath& path : plan.paths) {
     if (rests(path, 0.0)) continue;

@@ -6,9 +6,9 @@
 
 namespace prostm {
 
-/// Returns the loop of a plan, (E10), before the laps of any path are known: `base` is round(loop ·
-/// rate), and `samples` the smallest multiple of it that leaves time for a lap of the longest path.
-/// For a plan without a loop, all are 0.
+/// Returns the loop of a plan, (E10), before the laps of any path are known: `base` is loop · rate,
+/// rounded up, and `samples` the smallest multiple of it that leaves time for a lap of the longest
+/// path. For a plan without a loop, all are 0.
 /// @param sample_rate [Hz]; @param max_step largest step between samples [m]. @pre
 /// is_loop(plan.loop); the paths are measured, with finite numbers.
 InStep shared_loop(const LiftedPlan& plan, double sample_rate, double max_step);
