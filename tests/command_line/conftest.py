@@ -1,6 +1,8 @@
 """Shared fixtures of the command line's tests: the program, a way to run it, and markers."""
 
 import os
+import random
+import socket
 import subprocess
 import sys
 import time
@@ -54,6 +56,20 @@ def refuses(prostm):
         return lines[0]
 
     return check
+
+
+def free_port():
+    """Returns a port that no program uses. It is not one of those that the system gives to clients, or a client that
+    tries to connect before the server listens could get the same port, connect to itself and keep the port."""
+    while True:
+        port = random.randrange(20_000, 32_000)
+        with socket.socket() as tcp, socket.socket(type=socket.SOCK_DGRAM) as udp:
+            try:
+                tcp.bind(("127.0.0.1", port))
+                udp.bind(("127.0.0.1", port))
+                return port
+            except OSError:
+                continue
 
 
 def shared_file(name):

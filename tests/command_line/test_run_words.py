@@ -14,7 +14,7 @@ import time
 
 import pytest
 
-from conftest import ROOT, wait_for
+from conftest import ROOT, free_port, wait_for
 
 SMALL = ["run", "--grid", "32"]
 
@@ -148,12 +148,6 @@ def test_check_counts_the_cores_available_to_it(program, tmp_path):
     assert running.stdout.readline().startswith("1 core of ")
     running.send_signal(signal.SIGINT)
     running.communicate(timeout=60)
-
-
-def free_port():
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
 
 
 def test_a_missing_tracker_is_reported_at_once_and_in_the_exit_status(program, tmp_path):

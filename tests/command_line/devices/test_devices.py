@@ -7,16 +7,11 @@ import time
 
 import pytest
 
+from conftest import free_port
+
 
 def rows_of(prostm, *names, status=0):
     return json.loads(prostm("devices", *names, "--json", "-", status=status).stdout)
-
-
-@pytest.fixture
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def test_looks_for_everything_and_prints_at_most_100_columns(prostm):
@@ -36,8 +31,8 @@ def test_looks_for_everything_and_prints_at_most_100_columns(prostm):
         assert line.split()[:2] == [row["role"], row["kind"]]
 
 
-def test_looks_only_for_the_named_devices(prostm, free_port):
-    (row,) = rows_of(prostm, f"leap://127.0.0.1:{free_port}", status=1)
+def test_looks_only_for_the_named_devices(prostm):
+    (row,) = rows_of(prostm, f"leap://127.0.0.1:{free_port()}", status=1)
     assert row["found"] is False and "nothing answers" in row["words"]
     assert "UltraleapTrackingWebSocket" in row["words"]
     (row,) = rows_of(prostm, "sim")

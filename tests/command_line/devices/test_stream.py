@@ -11,19 +11,13 @@ import time
 import numpy as np
 import pytest
 
-from conftest import ROOT, wait_for
+from conftest import ROOT, free_port, wait_for
 
 STEP = 8.0 / 40e3  # largest step of an active focal point between samples [m]
 CHANGE = 1.0 / 40.0  # largest change of an intensity between samples
 SILENT_AFTER = 0.025  # after the last message [s]: 20 ms without one, then a ramp of 5 ms
 
 RECEIVERS = [(language, over) for language in ("c++", "python") for over in ("tcp", "udp")]
-
-
-def free_port():
-    with socket.socket() as tcp:
-        tcp.bind(("127.0.0.1", 0))
-        return tcp.getsockname()[1]
 
 
 def start_sender(program, folder, port, seconds):
