@@ -119,6 +119,10 @@ std::vector<Way> ways(const TransducerArray& array) {
     preset.strength_weight = weight;
     all.push_back(pro_stm(fmt::format("preset felt, {:.1f}", weight), preset, array));
   }
+  PlanSettings in_time;
+  in_time.preset = Preset::Felt;
+  in_time.budget = in_time.traits().live_budget;
+  all.push_back(pro_stm("preset felt, live", in_time, array));
   all.push_back(pro_stm("paper-valid", paper, array));
   all.push_back(am("AM, 4 foci", 4, array));
   all.push_back(am("AM, 8 foci", 8, array));

@@ -289,7 +289,10 @@ TEST(FitPresets, RandomFieldsGiveValidPlansThatKeepTheirSpacing) {
   PlanSettings brief = preset("best");
   brief.fit_starts = 2;
   brief.fit_kicks = 1;
-  Planner best(brief, kMaxSide * kMaxSide), felt(preset("felt"), kMaxSide * kMaxSide);
+  PlanSettings quick = preset("felt");
+  quick.budget = quick.traits().live_budget;
+  Planner best(brief, kMaxSide * kMaxSide), felt(quick, kMaxSide * kMaxSide),
+      refined(preset("felt"), kMaxSide * kMaxSide);
   std::uint64_t planned = 0;
   for (std::uint64_t seed = seeds.first; seed < seeds.end; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -297,7 +300,10 @@ TEST(FitPresets, RandomFieldsGiveValidPlansThatKeepTheirSpacing) {
     const test::RandomField input = test::random_field(random, kMaxSide);
     Plan plan;
     PlanStats stats;
-    Planner& planner = seed % 4 == 0 ? best : seed % 64 == 1 ? felt : fast;
+    Planner& planner = seed % 4 == 0     ? best
+                       : seed % 512 == 1 ? refined
+                       : seed % 64 == 1  ? felt
+                                         : fast;
     // half of them continue from a plan for another target
     if (seed % 8 < 4) planner.reset();
     const test::HeapGuard guard;
