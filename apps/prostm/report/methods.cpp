@@ -6,6 +6,7 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/methods/comparison.hpp"
+#include "report/metrics_table.hpp"
 #include "report/report.hpp"
 
 namespace prostm::app {
@@ -23,8 +24,7 @@ Json mean(const Distribution& of) {
 
 /// Sensation level of a mean percept [dB].
 Json sensation(const Distribution& percept_um) {
-  const double level = sensation_level(1e-6 * percept_um.summary().mean, usx_array());
-  return std::isnan(level) ? Json(nullptr) : Json(level);
+  return sensation_value(1e-6 * percept_um.summary().mean);
 }
 
 Json shape_rows(const AllMeans& means) {

@@ -13,5 +13,7 @@ namespace prostm::app {
 /// @param heading of the first column.
 std::vector<report::Column> metrics_columns(const std::string& heading);
 nlohmann::ordered_json metrics_row(const std::string& name, const Metrics& metrics);
+/// Returns the sensation level [dB] of a percept [m] from the array usx; null below every level.
+nlohmann::ordered_json sensation_value(double percept);
 
 }  // namespace prostm::app
