@@ -27,6 +27,20 @@ TEST(SettingsText, ContainsOnlyDifferences) {
             "[plan]\npreset = \"fast\"\n");
 }
 
+TEST(SettingsText, LeavesOutTheBudgetOfRealTime) {
+  PipelineSettings s;
+  for (const Preset preset : {Preset::Best, Preset::Felt}) {
+    s.plan.preset = preset;
+    s.plan.budget = 0.0;
+    const std::string text = changed_settings(s);
+    set_live_budget(s);
+    EXPECT_GT(s.plan.budget, 0.0);
+    EXPECT_EQ(changed_settings(s), text);
+    s.plan.budget *= 2.0;
+    EXPECT_NE(changed_settings(s), text);
+  }
+}
+
 TEST(SettingsText, ReadsBackExactly) {
   PipelineSettings s;
   s.scene = "four-plumes";

@@ -21,17 +21,14 @@ export interface CommandLine {
 const kSaid = [
   "pipeline.scene", "fluid.cells", "pipeline.method", "plan.preset", "plan.paths", "am.foci", "emit.foci", "emit.switch_at",
 ];
-// time budgets that a real-time run sets itself, by preset [s]
-const kLiveBudgets: Record<string, string> = { best: "0.002", felt: "0.02" };
 
 /// Whether the settings file holds anything that the options do not.
-function needsFile(settings: string, preset: string): boolean {
+function needsFile(settings: string): boolean {
   let group = "";
   for (const line of settings.split("\n")) {
-    const [key = "", value] = line.split(" = ");
-    const name = `${group}.${key}`;
+    const [key = ""] = line.split(" = ");
     if (line.startsWith("[")) group = line.slice(1, -1);
-    else if (key !== "" && !kSaid.includes(name) && (name !== "plan.budget" || value !== kLiveBudgets[preset])) return true;
+    else if (key !== "" && !kSaid.includes(`${group}.${key}`)) return true;
   }
   return false;
 }
@@ -46,8 +43,7 @@ export function commandLine(state: State): CommandLine {
   const { base } = state.transport;
   if (kHands.includes(base)) parts.push(`--hand ${base}`);
   else notes.push(`Add --hand and ${base === "recording" ? "the recording's file" : "the tracker's address"}.`);
-  const preset = state.controls.find((control) => control.id === "preset");
-  if (needsFile(state.settings, inWords(preset?.value ?? "best"))) {
+  if (needsFile(state.settings)) {
     parts.push("--settings prostm.toml");
     notes.push("Some settings have no option: copy them as prostm.toml, too.");
   }

@@ -1,5 +1,5 @@
 /// Frames and controls for tests, built from the relevant values.
-import type { ChoiceControl, Control, NumberControl, State } from "../../src/messages";
+import type { Control, NumberControl, State } from "../../src/messages";
 import { Decoder, kNumbers, type Frame, type NumberName, type Patch, type Run } from "../../src/wire";
 import { encode, type Contents } from "./encode";
 
@@ -24,10 +24,6 @@ export const paths: NumberControl = { ...base, id: "paths", label: "Paths", kind
 export const scene: Control = {
   ...base, id: "scene", label: "Scene", kind: "choice", value: "one-plume", default: "one-plume",
   choices: [{ value: "one-plume", label: "One wide plume" }, { value: "still-air", label: "Still air" }],
-};
-export const preset: ChoiceControl = {
-  ...base, id: "preset", label: "Preset", kind: "choice", value: "best", default: "best",
-  choices: [{ value: "best", label: "Best" }, { value: "felt", label: "Felt" }],
 };
 export const prediction: Control = { ...base, id: "prediction", label: "Prediction", kind: "switch", value: true, default: true };
 

@@ -4,7 +4,7 @@ import { commandLine } from "../../src/controls/command_line";
 import { RateWatch } from "../../src/panels/rates";
 import { advice, outputOf, placeOf, sourceOf } from "../../src/panels/words";
 import { handLength } from "../../src/scene/hand_bones";
-import { frameWith, paths, preset, scene, speed, stateWith } from "../support/frames";
+import { frameWith, paths, scene, speed, stateWith } from "../support/frames";
 import { skeleton } from "../support/skeleton";
 import { Matrix4 } from "three";
 
@@ -82,15 +82,7 @@ describe("the command line", () => {
     expect(commandLine(stateWith([scene, speed, { ...paths, value: 2 }]))).toEqual({
       command: "prostm run --view --scene one-plume --paths 2 --hand scripted", note: "",
     });
-    expect(commandLine(stateWith([scene], { settings: "[pipeline]\nscene = \"one-plume\"\n\n[plan]\nbudget = 0.002\n" })).command).not.toContain("--settings");
-  });
-  it("leaves out the time budget that a run in real time sets itself", () => {
-    const made = (value: string, budget: number) =>
-      commandLine(stateWith([{ ...preset, value }], { settings: `[plan]\npreset = "${value}"\nbudget = ${budget}\n` })).command;
-    expect(made("felt", 0.02)).toBe("prostm run --view --preset felt --hand scripted");
-    expect(made("best", 0.002)).toBe("prostm run --view --preset best --hand scripted");
-    expect(made("best", 0.02)).toContain("--settings");
-    expect(made("felt", 0.002)).toContain("--settings");
+    expect(commandLine(stateWith([scene], { settings: "[pipeline]\nscene = \"one-plume\"\n" })).command).not.toContain("--settings");
   });
   it("reports what else is needed", () => {
     const made = commandLine(stateWith([scene, { ...paths, enabled: false }], {

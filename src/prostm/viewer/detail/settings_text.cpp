@@ -31,9 +31,11 @@ class TomlValues final : public SettingsReader {
 
 }  // namespace
 
-std::string changed_settings(const PipelineSettings& settings) {
+std::string changed_settings(PipelineSettings settings) {
+  if (settings.plan.budget == settings.plan.traits().live_budget) settings.plan.budget = 0.0;
   const PipelineSettings defaults;
-  const auto groups = settings_groups(settings), untouched = settings_groups(defaults);
+  const auto groups = settings_groups(std::as_const(settings)),
+             untouched = settings_groups(defaults);
   std::string text;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     TomlValues now, before;

@@ -7,7 +7,8 @@
 
 namespace prostm::viewer {
 
-/// Every setting that differs from its default, as TOML for `--settings`; empty if none does.
-std::string changed_settings(const PipelineSettings& settings);
+/// Every setting that differs from its default, as TOML for `--settings`; empty if none does. A
+/// time budget that a run in real time sets itself is left out.
+std::string changed_settings(PipelineSettings settings);
 
 }  // namespace prostm::viewer
