@@ -140,7 +140,10 @@ TEST(LeapClient, WithoutAConnectionThereIsNoHand) {
     return !frame.hands.empty();
   }));
   server.reset();
-  while (hands->tracker_status()->connected) hands->sample(0.0, frame);
+  ASSERT_TRUE(eventually([&] {
+    hands->sample(0.0, frame);
+    return !hands->tracker_status()->connected;
+  }));
   hands->sample(0.0, frame);
   EXPECT_TRUE(frame.hands.empty())
       << "although the last frame is not " << TrackSettings().max_gap << " s old";
