@@ -11,6 +11,7 @@
 #include "prostm/core/random.hpp"
 #include "prostm/device/safety/head_levels.hpp"
 #include "prostm/device/safety/safety_limiter.hpp"
+#include "support/load.hpp"
 
 namespace prostm {
 namespace {
@@ -42,7 +43,7 @@ double nearest(const TransducerArray& array, const Vec3& p) {
 TEST(FocusLevels, AreNeverBelowTheExactValueAndHardlyAboveIt) {
   struct Case {
     TransducerArray array;
-    int points;
+    std::uint64_t points;
   };
   for (const Case& c :
        {Case{usx_array(), 30'000}, Case{autd3_array(), 60'000}, Case{two_units(), 20'000}}) {
@@ -50,7 +51,7 @@ TEST(FocusLevels, AreNeverBelowTheExactValueAndHardlyAboveIt) {
     const FocusLevels levels(c.array);
     Random random(3);
     std::vector<double> excess;
-    for (int i = 0; i < c.points; ++i) {
+    for (std::uint64_t i = 0; i < test::reduced(c.points); ++i) {
       const Eigen::Vector3f p = place_in(levels.box(), random);
       ASSERT_TRUE(levels.holds(p));
       if (nearest(c.array, p.cast<double>()) < 20e-3) continue;

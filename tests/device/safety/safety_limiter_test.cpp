@@ -12,6 +12,7 @@
 #include "prostm/device/safety/sample_chain.hpp"
 #include "prostm/emit/emitter.hpp"
 #include "support/heap_guard.hpp"
+#include "support/load.hpp"
 
 namespace prostm {
 namespace {
@@ -194,7 +195,7 @@ class RandomStream {
 
 TEST(SafetyLimiter, CapsHoldFor100000RandomStreams) {
   constexpr std::size_t kFoci = 4, kLength = 20;
-  constexpr int kCaps = 20, kStreams = 5000;
+  constexpr int kCaps = 20, kStreams = static_cast<int>(test::reduced(5000));
   const TransducerArray array = small_array();
   Random random(11);
   int exceeded = 0;
@@ -252,7 +253,7 @@ void random_plan(Random& random, LiftedPlan& plan) {
 
 TEST(SafetyLimiter, CapsHoldFor100000RandomPlans) {
   constexpr std::size_t kFoci = 4, kBlock = 10;
-  constexpr int kCaps = 20, kPlans = 5000;
+  constexpr int kCaps = 20, kPlans = static_cast<int>(test::reduced(5000));
   const TransducerArray array = small_array();
   Random random(13);
   int exceeded = 0;

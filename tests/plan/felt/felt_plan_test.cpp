@@ -9,6 +9,7 @@
 #include "plan/random_fields.hpp"
 #include "prostm/fields/fields.hpp"
 #include "support/heap_guard.hpp"
+#include "support/load.hpp"
 
 namespace prostm {
 namespace {
@@ -116,7 +117,8 @@ TEST(FeltPlan, IsValidForAnyTarget) {
     Random random(11);
     const PlanSettings settings = felt(points);
     Planner planner(settings, 64 * 64);
-    for (int draw = 0; draw < (points ? 30 : 400); ++draw) {
+    const std::uint64_t draws = points ? 30 : 400;
+    for (std::uint64_t draw = 0; draw < test::reduced(draws); ++draw) {
       const test::RandomField any = test::random_field(random, 40);
       Plan plan;
       PlanStats stats;
