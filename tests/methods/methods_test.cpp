@@ -82,9 +82,18 @@ TEST(Rendering, FeltFociAreDelayed) {
   Renderer renderer(usx_array(), field);
   const Rendering usual = renderer.render(Way::Am, field),
                   felt = renderer.render(Way::AmFelt, field);
-  EXPECT_LE(felt.plan.foci.size(), 6U);
   EXPECT_TRUE(std::ranges::any_of(felt.plan.foci, [](const auto& f) { return f.phase > 0.0; }));
   EXPECT_TRUE(std::ranges::all_of(usual.plan.foci, [](const auto& f) { return f.phase == 0.0; }));
+}
+
+TEST(Rendering, FeltFociAreAsManyAsSuitTheTarget) {
+  const auto foci_on = [](fields::Pattern pattern) {
+    const TargetField field = fields::make(pattern, 50, kCells);
+    Renderer renderer(usx_array(), field);
+    return renderer.render(Way::AmFelt, field).plan.foci.size();
+  };
+  EXPECT_EQ(foci_on(fields::Pattern::Palm), 1U) << "one focus is strongest";
+  EXPECT_GE(foci_on(fields::Pattern::FourPlumes), 4U);
 }
 
 }  // namespace

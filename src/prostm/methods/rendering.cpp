@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "prostm/acoustics/field/focus_width.hpp"
 #include "prostm/am/am_planner.hpp"
@@ -34,10 +36,10 @@ Plan am(const AmSettings& settings, const TargetField& target) {
   return plan;
 }
 
-/// Settings that make AM's percept most like the target (docs/measurements/felt.md).
-AmSettings felt_am(double focus_width) {
+/// AM with optimised pressures and phases; σ is the best one (docs/measurements/felt.md).
+AmSettings felt_am(int foci, double focus_width) {
   AmSettings settings;
-  settings.foci = 6;
+  settings.foci = foci;
   settings.sigma = 16e-3;
   settings.felt_weight = 1.0;
   settings.widths = {{0.2}, {0.0}, {0.0}, {focus_width}};  // the same everywhere
@@ -58,8 +60,6 @@ Plan plan_by(Way way, const TargetField& target, double focus_width, Random& ran
       return pro_stm(Preset::Felt, focus_width, target);
     case Way::Am:
       return am({}, target);
-    case Way::AmFelt:
-      return am(felt_am(focus_width), target);
     case Way::Circle:
       return circle_at_mean_distance(target, paper.gain_law(), paper.least_length,
                                      paper.max_length());
@@ -67,6 +67,7 @@ Plan plan_by(Way way, const TargetField& target, double focus_width, Random& ran
       return circles_at_mass_centres(target, paper.gain_law(), paper.max_length(), 1);
     case Way::RandomCircles:
       return random_circles(target, paper.sigma, paper.gain_law(), paper.max_length(), random);
+    case Way::AmFelt:  // Renderer::render() compares several
     case Way::Flat:
       break;
   }
@@ -142,6 +143,8 @@ struct Renderer::Parts {
                   .sigma()) {}
 
   void play(const TargetField& target, Rendering& out);
+  void score(const TargetField& target, Rendering& out) const;
+  Rendering felt_am_rendering(const TargetField& target);
 
   Medium medium;
   TransducerArray array;
@@ -165,12 +168,41 @@ void Renderer::Parts::play(const TargetField& target, Rendering& out) {
   out.felt = skin.feel(target, loop.samples / loop.sample_rate, out.field.parts, out.field.part);
 }
 
+void Renderer::Parts::score(const TargetField& target, Rendering& out) const {
+  const PlanSettings paper;
+  if (!out.plan.empty())
+    out.of_model = score_plan(target, out.plan, 0, paper.sigma, paper.gain_law());
+  out.of_envelope = score_physical(target, out.field.envelope, 0.0);
+  out.of_felt = score_physical(target, out.felt.percept, 0.0);
+  out.ghosts = ghosts_of(target, out.felt.percept);
+}
+
+/// Renders every number of foci, and keeps the rendering with the least (P25) of its own percept.
+Rendering Renderer::Parts::felt_am_rendering(const TargetField& target) {
+  Rendering best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int foci = 1; foci <= kMaxPaths; ++foci) {
+    Rendering one;
+    one.plan = am(felt_am(foci, sigma), target);
+    play(target, one);
+    if (!one.felt_at_all) return one;
+    score(target, one);
+    const double cost =
+        1.0 - one.of_felt.skill_8 - PlanSettings().strength_weight * std::log(one.felt.largest);
+    if (cost >= least) continue;
+    least = cost;
+    best = std::move(one);
+  }
+  return best;
+}
+
 Renderer::Renderer(const TransducerArray& array, const TargetField& raster)
     : parts_(std::make_unique<Parts>(array, raster)) {}
 
 Renderer::~Renderer() = default;
 
 Rendering Renderer::render(Way way, const TargetField& target) {
+  if (way == Way::AmFelt) return parts_->felt_am_rendering(target);
   Rendering out;
   out.plan = plan_by(way, target, parts_->sigma, parts_->random);
   if (way == Way::Flat) {
@@ -184,12 +216,8 @@ Rendering Renderer::render(Way way, const TargetField& target) {
   } else {
     parts_->play(target, out);
     if (!out.felt_at_all) return out;
-    const PlanSettings paper;
-    out.of_model = score_plan(target, out.plan, 0, paper.sigma, paper.gain_law());
   }
-  out.of_envelope = score_physical(target, out.field.envelope, 0.0);
-  out.of_felt = score_physical(target, out.felt.percept, 0.0);
-  out.ghosts = ghosts_of(target, out.felt.percept);
+  parts_->score(target, out);
   return out;
 }
 
