@@ -8,6 +8,7 @@
 #include "felt/kept.hpp"
 #include "felt/live.hpp"
 #include "felt/picture.hpp"
+#include "felt/recorded.hpp"
 #include "felt/tables.hpp"
 #include "program.hpp"
 #include "prostm/figure/figures.hpp"
@@ -40,17 +41,23 @@ std::vector<std::string> names_of(const std::vector<Named>& all) {
   return out;
 }
 
-/// Scores live runs of moving and of still targets.
+/// Scores live runs of moving and of still targets, or of those of a recording if it is not empty.
 std::vector<Row> live_rows(const TransducerArray& array, const std::vector<Way>& ways, int most,
-                           int threads, bool each) {
+                           int threads, bool each, const std::string& recording) {
   std::vector<Row> rows;
-  for (const bool is_still : {false, true}) {
-    const LiveSet set = score_live(is_still ? "live, still" : "live, moving", array,
-                                   live_sequences(is_still, most), ways, threads);
+  const auto score = [&](const std::string& name, const std::vector<LiveSequence>& sequences) {
+    const LiveSet set = score_live(name, array, sequences, ways, threads);
     print_live(set, each);
     std::fflush(stdout);
     add_live_rows(set, rows);
+  };
+  constexpr int kMost = 8;
+  if (!recording.empty()) {
+    score("live, recorded", recorded_sequences(recording, most > 0 ? most : kMost));
+    return rows;
   }
+  score("live, moving", live_sequences(false, most));
+  score("live, still", live_sequences(true, most));
   return rows;
 }
 
@@ -60,7 +67,7 @@ int main(int argc, char** argv) {
   Program program("how well plans are felt, by the array's own field");
   std::vector<std::string> sets = {"gallery", "scout", "plumes", "new"}, only_ways, only_skins,
                            only_disturbances;
-  std::string figure, keep;
+  std::string figure, keep, recording;
   int most = 0, threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   bool each = false, quick = false, live = false;
   program.option("--set", sets,
@@ -70,6 +77,8 @@ int main(int argc, char** argv) {
   program.option("--disturbances", only_disturbances, "only these disturbances");
   program.flag("--live", live,
                "plans that replace one another every 40 ms, felt in time, instead of the sets");
+  program.option("--recording", recording,
+                 "with --live: seconds of this recording of prostm run, instead of generated ones");
   program.flag("--quick", quick, "only the first skin, and no disturbance");
   program.option("--fields", most, "number of fields of each set; 0: all", 0, 1000);
   program.option("--threads", threads, "number of fields that are judged at once", 1, 64);
@@ -89,7 +98,8 @@ int main(int argc, char** argv) {
     keep_only(disturbances, only_disturbances, "disturbance");
     if (all_ways[0].is_control)
       throw InputError("the first way is the reference, so it must not be a control");
-    if (live) return live_rows(array, all_ways, most, threads, each);
+    if (!recording.empty() && !live) throw InputError("--recording needs --live");
+    if (live) return live_rows(array, all_ways, most, threads, each, recording);
     if (quick) {
       all_skins.resize(1);
       disturbances.clear();

@@ -43,6 +43,9 @@ LiveScores score_run(const TransducerArray& array, const LiveSequence& sequence,
   }
   LiveScores out;
   judge_loops(array, way, plans, out);
+  const auto points_of = [](const Plan& plan) { return plan.paths.size() + plan.foci.size(); };
+  for (std::size_t i = 1; i < plans.size(); ++i)
+    out.changes += points_of(plans[i].plan) != points_of(plans[i - 1].plan) ? 1.0 : 0.0;
   LiveSettings settings;
   settings.emit.foci = static_cast<int>(foci);
   settings.emit.power_limit = static_cast<double>(foci);  // only the array limits the power
@@ -52,6 +55,7 @@ LiveScores score_run(const TransducerArray& array, const LiveSequence& sequence,
   felt_live(
       method, plans, settings, array, skin, pool, [](std::size_t, std::size_t) { return true; },
       felt);
+  out.changes /= static_cast<double>(plans.size()) * settings.interval;
   out.live = felt.metrics.skill_8;
   out.window = std::accumulate(felt.window_skill_8.begin(), felt.window_skill_8.end(), 0.0) /
                static_cast<double>(felt.window_skill_8.size());
@@ -70,16 +74,21 @@ double mean(const std::vector<LiveScores>& scores, double LiveScores::*value) {
 std::string line(const std::vector<LiveScores>& own, const std::vector<LiveScores>& first) {
   const auto of = [&](double LiveScores::*value) { return mean(own, value); };
   const auto more = [&](double LiveScores::*value) { return of(value) - mean(first, value); };
+  const auto lack = [&](double LiveScores::*value) {
+    return (1.0 - of(value)) / (1.0 - mean(first, value));
+  };
   constexpr double kGain = 0.01;
   const auto left = [&](double LiveScores::*value) {
     const double gain = more(&LiveScores::loop);
     return gain > kGain ? fmt::format("{:.2f}", more(value) / gain) : std::string("-");
   };
-  return fmt::format("{:>6.3f} {:>6.3f} {:>6.3f} {:>6.2f} {:>6} {:>6.3f} {:>6} {:>7.2f} {:>6.3f}",
-                     of(&LiveScores::alone), of(&LiveScores::loop), of(&LiveScores::live),
-                     (1.0 - of(&LiveScores::live)) / (1.0 - mean(first, &LiveScores::live)),
-                     left(&LiveScores::live), of(&LiveScores::window), left(&LiveScores::window),
-                     1e6 * of(&LiveScores::intensity), of(&LiveScores::faded));
+  return fmt::format(
+      "{:>6.3f} {:>6.3f} {:>6.3f} {:>6.2f} {:>6} {:>6.3f} {:>6.2f} {:>6} {:>7.2f} {:>6.3f} "
+      "{:>8.2f}",
+      of(&LiveScores::alone), of(&LiveScores::loop), of(&LiveScores::live), lack(&LiveScores::live),
+      left(&LiveScores::live), of(&LiveScores::window), lack(&LiveScores::window),
+      left(&LiveScores::window), 1e6 * of(&LiveScores::intensity), of(&LiveScores::faded),
+      of(&LiveScores::changes));
 }
 
 }  // namespace
@@ -131,10 +140,10 @@ void print_live(const LiveSet& set, bool each) {
   fmt::print(
       "\n{}, {} sequences: S_8.5 of √e, plans alone and of the run as loops, then in a live run "
       "against the mean target,\nand each 40 ms against its own. lack: 1 - S_8.5 over that of {}. "
-      "left: share of the gain of loops over it\n{:<20} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} "
-      "{:>7} {:>6}\n",
+      "left: share of the gain of loops over it.\nchanges: of the number of focal points, per "
+      "second\n{:<20} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6} {:>8}\n",
       set.name, set.sequences.size(), set.ways[0], "", "alone", "loops", "live", "lack", "left",
-      "40 ms", "left", "√E µm", "faded");
+      "40 ms", "lack", "left", "√E µm", "faded", "changes");
   for (std::size_t w = 0; w < set.ways.size(); ++w)
     fmt::print("{:<20} {}\n", set.ways[w], line(set.scores[w], set.scores[0]));
   if (!each) return;

@@ -29,6 +29,7 @@ struct LiveScores {
   double window = 0.0;     ///< mean over its windows of 40 ms, each against its own target
   double intensity = 0.0;  ///< √E of the run [m]
   double faded = 0.0;      ///< share of samples in a fade
+  double changes = 0.0;    ///< changes of the number of focal points, per second
 };
 
 /// A set of sequences, scored in several ways: [way][sequence]. Ways are compared with the first.
