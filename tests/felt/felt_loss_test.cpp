@@ -163,6 +163,24 @@ TEST(FeltLoss, MeasuresALackIndependentlyOfTheUnit) {
   EXPECT_NEAR(lack.loudness(), 1000.0 * loudness, 1e-9 * loudness);
 }
 
+TEST(FeltLoss, ItsCoarseLackIsTheLossWithoutOtherTerms) {
+  const Judge judge(fields::Pattern::FourPlumes);
+  const Sources<double> sources(3, kSources);
+  const auto loss_with = [&](const FeltWeights& weights) {
+    FeltLoss<double> loss(2, kFeltCells, kSources, weights, false);
+    loss.set_target(cells_of(fields::Pattern::FourPlumes));
+    loss.set_sources(judge.tables, sources.all);
+    return loss;
+  };
+  FeltLoss<double> alone = loss_with({.fine = 0.0, .energy = 0.0, .loudness = 0.0, .quiet = 0.0});
+  FeltLoss<double> with_all = loss_with(kWeights);
+  const double value = alone.evaluate(sources.amplitude);
+  with_all.evaluate(sources.amplitude);
+  EXPECT_NEAR(alone.coarse_lack(), value, 1e-12);
+  EXPECT_NEAR(with_all.coarse_lack(), value, 1e-12);
+  EXPECT_GT(with_all.lack(), value);
+}
+
 TEST(FeltLoss, DoesNotAllocate) {
   FeltLoss<float> loss(2, kFeltCells, 64, kWeights, true);
   const FeltSkins<float> tables = skins<float>();

@@ -42,6 +42,7 @@ struct FeltLoss<Real>::Impl {
     Vector percept;
     Real log_energy = 0, kept = 0;  // log energy of this loop, and the one to keep
     Real lack = 0;                  // (W2), without its part for e
+    Real coarse = 0;                // 1 − S_8.5 of √e
   };
 
   Impl(std::size_t skins, std::size_t most_cells, std::size_t sources, const FeltWeights& w,
@@ -160,6 +161,7 @@ Real FeltLoss<Real>::Impl::evaluate(std::size_t number, std::optional<Real> keep
   const Real missing = std::max(-louder - static_cast<Real>(FeltWeights::kSlack), Real(0));
   const Real wanted = loudness + 2 * quiet * missing;
   s.lack = lack.of(root, fine, d_root);
+  s.coarse = lack.coarse();
   Real value = s.lack - loudness * louder + quiet * missing * missing;
   d_energy.setZero();
   if (energy_share > 0) value += energy_share * lack.of(e, Real(0), d_energy);
@@ -260,6 +262,13 @@ template <class Real>
 Real FeltLoss<Real>::lack() const {
   Real sum = 0;
   for (const auto& s : impl_->skin) sum += s.lack;
+  return sum / static_cast<Real>(impl_->skin.size());
+}
+
+template <class Real>
+Real FeltLoss<Real>::coarse_lack() const {
+  Real sum = 0;
+  for (const auto& s : impl_->skin) sum += s.coarse;
   return sum / static_cast<Real>(impl_->skin.size());
 }
 

@@ -72,6 +72,8 @@ class FeltLoss {
   std::span<const Real> percept(std::size_t skin) const;
   /// Lack of the last evaluate(): (W2) without its part for e, the mean over the skins.
   Real lack() const;
+  /// 1 − S_8.5 of √e of the last evaluate(), the mean over the skins.
+  Real coarse_lack() const;
   /// Loudness of the last evaluate(): the geometric mean over the skins of the rms percept.
   Real loudness() const;
 

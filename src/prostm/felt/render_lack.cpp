@@ -96,14 +96,14 @@ Real RenderLack<Real>::of(const Eigen::Ref<const Vector>& field, Real fine,
   own = area().cwiseProduct(field);
   blur(own, smooth);
   smooth.array() /= density.array();
-  const Real blurred = blurred_.of(area(), blurred_target_.head(cells_), smooth, own);
+  coarse_ = blurred_.of(area(), blurred_target_.head(cells_), smooth, own);
   own.array() /= density.array();
   blur(own, pull);
   pull.array() *= area().array();
-  if (fine == 0) return blurred;
+  if (fine == 0) return coarse_;
   const Real sharp = sharp_.of(area(), target_.head(cells_), field, own);
   pull += fine * own;
-  return blurred + fine * sharp;
+  return coarse_ + fine * sharp;
 }
 
 template class RenderLack<float>;

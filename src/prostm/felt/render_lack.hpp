@@ -23,6 +23,8 @@ class RenderLack {
   /// Returns 1 − S_8.5 + fine (1 − S_0). @param pull its gradient with respect to the field. @pre
   /// the field has a value above 0.
   Real of(const Eigen::Ref<const Vector>& field, Real fine, Eigen::Ref<Vector> pull);
+  /// Returns 1 − S_8.5 of the field of the last of().
+  Real coarse() const { return coarse_; }
 
   /// Shares of the skin of the cells; their sum is 1.
   Eigen::Ref<const Vector> area() const { return area_.head(cells_); }
@@ -44,6 +46,7 @@ class RenderLack {
   // the first cells_ entries are in use; density_ is the blur of the area
   Vector area_, target_, blurred_target_, density_, smooth_, pull_;
   Measure sharp_, blurred_;
+  Real coarse_ = 0;
   // the raster of blocks, with a margin of reach_ without area
   Eigen::Index rows_ = 0, cols_ = 0, reach_ = 0, stride_ = 0;
   std::array<Real, 2 * kMostReach + 1> taps_{};

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include "prostm/plan/detail/fit/felt/plain_loops.hpp"
@@ -17,8 +16,7 @@ constexpr FeltEffort kRoughEffort = {8, 0.5F};  // descent of each plan that is 
 // descents of the chosen plan: points, then pressures, first of a new plan, then from the last one
 constexpr FeltEffort kMoving = {25, 0.5F}, kMoved = {12, 0.5F};
 constexpr FeltEffort kMovingOn = {8, 0.3F}, kMovedOn = {6, 0.5F};
-constexpr std::size_t kRefined = 2;   // candidates whose points and pressures are refined
-constexpr int kRefiningRounds = 4;    // rounds of moving points and mending paths
+constexpr int kRefiningRounds = 4;    // of moving points and mending paths
 constexpr int kPlansPerRival = 3;     // plans of a sequence for each comparison
 constexpr float kHysteresis = 0.04F;  // cost that another candidate must save
 constexpr float kLost = 0.05F;        // cost by which a sequence may exceed its least
@@ -154,11 +152,11 @@ float FeltPlanner::refine(const PatchTask& task, Candidate& candidate, int round
   return refined;
 }
 
-/// Refines the cheapest plans, and sets chosen_ to the one that costs least then. @return false if
-/// there is no time for any.
-bool FeltPlanner::refine_cheapest(const PatchTask& task, PlanStats& stats) {
+/// Refines the plans, the cheapest first, and sets chosen_ to the one that costs least then.
+/// @return false if there is no time for any.
+bool FeltPlanner::refine_candidates(const PatchTask& task, PlanStats& stats) {
   float least = std::numeric_limits<float>::infinity();
-  for (const Rated& rated : std::span(rated_).first(std::min(kRefined, rated_.size()))) {
+  for (const Rated& rated : rated_) {
     if (!has_time(task, times_.refining)) break;
     const StageTimer timer;
     thorough_.forget();
@@ -220,7 +218,7 @@ void FeltPlanner::plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats
     continue_plan(task, stats);
   } else {
     compare(task, follows && !count_.may_change() ? candidates_[chosen_].paths : 0, stats);
-    if (!refine_cheapest(task, stats)) end_quickly(task, stats);
+    if (!refine_candidates(task, stats)) end_quickly(task, stats);
   }
   const StageTimer timer;
   Candidate& chosen = candidates_[chosen_];

@@ -52,7 +52,7 @@ class FeltPlanner : public PatchPlanner {
   float plan_roughly(const PatchTask& task, Candidate& candidate, PlanStats& stats);
   void compare(const PatchTask& task, int paths, PlanStats& stats);
   float refine(const PatchTask& task, Candidate& candidate, int rounds, PlanStats& stats);
-  bool refine_cheapest(const PatchTask& task, PlanStats& stats);
+  bool refine_candidates(const PatchTask& task, PlanStats& stats);
   void continue_plan(const PatchTask& task, PlanStats& stats);
   void end_quickly(const PatchTask& task, PlanStats& stats);
 

@@ -85,7 +85,7 @@ float FeltProblem::add_envelope(float felt) {
 
 FeltRating FeltProblem::rating() const {
   const std::span<const float> percept = loss_.percept(kNominalSkin);
-  return {loss_.lack(), *std::max_element(percept.begin(), percept.end())};
+  return {loss_.coarse_lack(), *std::max_element(percept.begin(), percept.end())};
 }
 
 float FeltProblem::evaluate(std::span<const float> root) {

@@ -19,7 +19,7 @@ namespace prostm::planning {
 
 /// How a plan is felt by the planner's model.
 struct FeltRating {
-  float lack = 0.0F;      ///< (W3)
+  float lack = 0.0F;      ///< 1 − S_8.5 of √e, the mean over the skins
   float strength = 0.0F;  ///< largest √e on the nominal skin over the output (P20) [µm per unit]
 };
 
