@@ -56,7 +56,8 @@ def test_the_preset_reports_what_it_chose(prostm, settings):
     for path in plan["paths"]:
         laps = plan["loop_ms"] / path["period_ms"]
         assert laps == pytest.approx(round(laps), abs=1e-9) and path["speed_m_s"] <= 7 * (1 + 1e-9)
-    stronger = plan_of(prostm, "--preset", "felt", "--settings", settings("[plan]\nstrength_weight = 5\n"))
+    stronger = plan_of(prostm, "--preset", "felt", "--array", "usx", "--settings",
+                       settings("[plan]\nstrength_weight = 5\n"))
     assert len(stronger["paths"]) == 1 <= len(plan["paths"]) <= 4
 
 
