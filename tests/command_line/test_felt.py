@@ -66,7 +66,7 @@ def test_the_preset_reports_what_it_chose(prostm, settings):
     ('[plan]\npreset = "fast"\nfelt_points = true\n', 3, "felt_points"),
 ])
 def test_settings_of_earlier_versions_select_the_preset_with_a_warning(prostm, settings, text, line, name):
-    done = prostm("plan", FIELD, "--settings", settings(text), "--json", "plan.json")
+    done = prostm("plan", FIELD, "--settings", settings(text), "--budget-ms", "20", "--json", "plan.json")
     assert done.stderr.startswith(
         f'prostm: warning: s.toml, line {line}: plan.{name} was replaced by preset "felt", which is used\n')
     assert done.stderr.count("warning: s.toml") == 1 and "plan.strength_weight" in done.stdout
@@ -91,7 +91,6 @@ def test_am_reports_it_too(prostm, settings):
 
 
 @pytest.mark.long
-@pytest.mark.long
 def test_with_an_array_the_verdict_is_about_the_felt_field(prostm):
     end = " (1 is perfect, 0 is no better than an even field)"
     metrics = plan_of(prostm, "--array", "usx", "--preset", "felt")["metrics"]
@@ -112,7 +111,6 @@ def test_a_pressure_field_that_loses_to_a_control_does_not_imply_that_the_felt_f
     assert warning.endswith(": its pressure hardly resembles the field")
 
 
-@pytest.mark.long
 @pytest.mark.long
 def test_the_arrays_own_field_is_felt_more_like_the_target(prostm):
     lack = {}

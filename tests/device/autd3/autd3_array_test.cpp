@@ -59,18 +59,24 @@ double largest_error(const std::vector<test::PlayedSample>& log, const Circles& 
   return largest;
 }
 
-TEST(Autd3Array, PlaysEverySampleAtItsPosition) {
+/// Plays for 1.5 s and compares each sample. @return false if every block was too late.
+bool plays_every_sample() {
   StandIn server({"--frames-per-ms", "2", "--log"});
   Autd3Array array(server.setup());
   EXPECT_LE(array.budget().frames_per_ms, 2.1);
   EXPECT_LE(array.budget().block_time, 0.0205);
   Circles source(4, array.info().sample_rate);
   const test::StopAtEnd stop(array);
-  ASSERT_EQ(array.start(source), DeviceStatus::Running);
+  EXPECT_EQ(array.start(source), DeviceStatus::Running);
   sleep_s(1.5);
   const DeviceStats stats = array.stats();
   array.stop();
   const nlohmann::json report = server.report();
+  std::printf("%s\n%s\nmissed %d of %d blocks, longest silence %.1f ms\n",
+              array.description().c_str(), report.dump().c_str(),
+              static_cast<int>(stats.missed_blocks), static_cast<int>(stats.blocks),
+              1e3 * report["longest_silence"].get<double>());
+  if (stats.missed_blocks == stats.blocks) return false;
   expect_no_fault(report);
   EXPECT_GE(stats.blocks, 30);
   EXPECT_EQ(report["sounds"], false);
@@ -81,10 +87,14 @@ TEST(Autd3Array, PlaysEverySampleAtItsPosition) {
   EXPECT_LT(largest_error(server.log(), source, 4, compared), 0.05e-3);
   EXPECT_GT(compared, 500);
   EXPECT_EQ(source.allocations(), 0U);
-  std::printf("%s\n%s\nmissed %d of %d blocks, longest silence %.1f ms\n",
-              array.description().c_str(), report.dump().c_str(),
-              static_cast<int>(stats.missed_blocks), static_cast<int>(stats.blocks),
-              1e3 * report["longest_silence"].get<double>());
+  return true;
+}
+
+TEST(Autd3Array, PlaysEverySampleAtItsPosition) {
+  // a connection measures its link once: if the machine slows down after that, all blocks are late
+  bool played = false;
+  for (int connection = 0; connection < 3 && !played; ++connection) played = plays_every_sample();
+  EXPECT_TRUE(played);
 }
 
 TEST(Autd3Array, SendsEachUnitItsOwnPositions) {

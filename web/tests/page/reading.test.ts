@@ -228,8 +228,9 @@ describe("a page that is touched", () => {
   });
   it("shows the values at a tap on a plane and on a strip", async () => {
     await touched.locator('canvas[data-kind="target"]').tap();
-    await expect.poll(() => note().textContent()).toMatch(/^target .* mm over the array$/s);
-    expect(await note().isVisible()).toBe(true);
+    // the text of an earlier note remains while it is hidden
+    await expect.poll(() => note().isVisible()).toBe(true);
+    expect(await note().textContent()).toMatch(/^target .* mm over the array$/s);
     await touched.locator('[data-strip="quality"] .u-over').tap();
     expect(await note().isHidden()).toBe(true);
     await expect.poll(() => touched.locator("#strips-at").textContent()).toMatch(/^values \d+\.\d s ago$/);
