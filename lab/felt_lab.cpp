@@ -51,13 +51,12 @@ std::vector<Row> live_rows(const TransducerArray& array, const std::vector<Way>&
     std::fflush(stdout);
     add_live_rows(set, rows);
   };
-  constexpr int kMost = 8;
-  if (!recording.empty()) {
-    score("live, recorded", recorded_sequences(recording, most > 0 ? most : kMost));
-    return rows;
+  if (recording.empty()) {
+    score("live, moving", live_sequences(false, most));
+    score("live, still", live_sequences(true, most));
+  } else {
+    score("live, recorded", recorded_sequences(recording, most));
   }
-  score("live, moving", live_sequences(false, most));
-  score("live, still", live_sequences(true, most));
   return rows;
 }
 

@@ -14,8 +14,7 @@
 namespace prostm::bench {
 namespace {
 
-constexpr int kCells = 54;               // per edge of the raster; each of 3 mm
-constexpr int kPlans = 25, kFirst = 40;  // of a run; frame of the first target
+constexpr int kFirst = 40;               // frame of the first target
 constexpr std::size_t kLookedApart = 6;  // number of plans that are also judged as loops
 
 /// Judges some plans of the second half of a run as loops: those of the run, and plans made alone.
@@ -101,8 +100,8 @@ std::vector<LiveSequence> live_sequences(bool is_still, int most) {
     if (most > 0 && static_cast<int>(out.size()) == most) break;
     LiveSequence& sequence = out.emplace_back();
     sequence.name = fields::to_string(pattern);
-    for (int i = 0; i < kPlans; ++i)
-      sequence.targets.push_back(fields::make(pattern, kFirst + (is_still ? 0 : i), kCells));
+    for (int i = 0; i < kLivePlans; ++i)
+      sequence.targets.push_back(fields::make(pattern, kFirst + (is_still ? 0 : i), kLiveCells));
   }
   return out;
 }

@@ -11,6 +11,9 @@
 
 namespace prostm::bench {
 
+inline constexpr int kLiveCells = 54;  ///< cells along each edge of a live run's raster
+inline constexpr int kLivePlans = 25;  ///< plans of a live run of a second
+
 /// The targets of a live run, all on one raster.
 struct LiveSequence {
   std::string name;

@@ -4,100 +4,116 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/recorder.hpp"
+#include "prostm/psychophysics/places.hpp"
 
 namespace prostm::bench {
 namespace {
 
-constexpr int kCells = 54;       // per edge of the raster …
-constexpr double kCell = 3e-3;   // … of cells [m]
+constexpr double kCell = 3e-3;   // edge of a cell of a sequence's raster [m]
 constexpr double kPlan = 0.040;  // time between plans [s]
-constexpr std::size_t kPlans = 25;
 
-/// Returns the fractional row and column of a point, or nothing outside the centres of the cells.
-bool cell_at(const TargetField& field, const Vec2& x, double& row, double& col) {
-  col = (x.x() - field.origin.x()) / field.cell;
-  row = (x.y() - field.origin.y()) / field.cell;
-  return col >= 0.0 && row >= 0.0 && col < field.cols - 1 && row < field.rows - 1;
+/// Returns the middle of a target's raster [m].
+Vec2 middle_of(const TargetField& field) {
+  return field.origin + 0.5 * field.cell * Vec2(field.cols - 1, field.rows - 1);
+}
+
+/// Returns a map of `from`, a value per cell, at the cells of `onto`, bilinear between the centres.
+template <class Map>
+std::vector<double> resampled(const TargetField& from, const Map& map, const TargetField& onto) {
+  const SkinPatch patch{from.rows, from.cols, from.cell};
+  const std::vector<double> values(map.begin(), map.end());
+  std::vector<double> out;
+  for (std::size_t i = 0; i < onto.size(); ++i)
+    out.push_back(value_at(patch, values, onto.position(i) - middle_of(from)));
+  return out;
 }
 
 /// Returns a raster in the plane of `first`, with its skin and its heights.
 TargetField raster_over(const TargetField& first) {
   TargetField out;
-  out.resize(kCells, kCells);
+  out.resize(kLiveCells, kLiveCells);
   out.cell = kCell;
-  const Vec2 middle = first.origin + 0.5 * first.cell * Vec2(first.cols - 1, first.rows - 1);
-  out.origin = middle - 0.5 * kCell * Vec2(kCells - 1, kCells - 1);
+  out.origin = middle_of(first) - 0.5 * kCell * Vec2(kLiveCells - 1, kLiveCells - 1);
   out.X_DP = first.X_DP;
+  const std::vector<double> skin = resampled(first, first.skin, out);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const Vec2 x = out.position(i);
-    double row = 0.0, col = 0.0;
-    if (!cell_at(first, x, row, col)) continue;
-    const auto nearest =
-        first.index(static_cast<int>(std::lround(row)), static_cast<int>(std::lround(col)));
-    out.skin[i] = first.skin[nearest];
-    out.height[i] = height_at(first, x);
+    if (skin[i] < 0.5) continue;
+    out.skin[i] = 1;
+    out.height[i] = height_at(first, out.position(i));
   }
   fill_heights(out);
   return out;
 }
 
-/// Sets the pressure of `onto` to that of `from`, bilinear between the centres of its cells.
-void resample(const TargetField& from, TargetField& onto) {
+/// Sets the pressure of `onto`, on its skin, to that of `from`.
+void take_pressure(const TargetField& from, TargetField& onto) {
+  onto.pressure = resampled(from, from.pressure, onto);
   for (std::size_t i = 0; i < onto.size(); ++i) {
-    onto.pressure[i] = 0.0;
-    double row = 0.0, col = 0.0;
-    if (onto.skin[i] == 0 || !cell_at(from, onto.position(i), row, col)) continue;
-    const int r = static_cast<int>(row), c = static_cast<int>(col);
-    const double v = row - r, u = col - c;
-    onto.pressure[i] = (1.0 - v) * ((1.0 - u) * from.pressure[from.index(r, c)] +
-                                    u * from.pressure[from.index(r, c + 1)]) +
-                       v * ((1.0 - u) * from.pressure[from.index(r + 1, c)] +
-                            u * from.pressure[from.index(r + 1, c + 1)]);
+    if (onto.skin[i] == 0) onto.pressure[i] = 0.0;
   }
 }
 
-/// Returns the second that begins at frame `first`; empty if a frame of it has no pressure, or if
+/// Returns the frame that is nearest to a time [s].
+int frame_at(std::span<const double> times, double time) {
+  const auto after = std::lower_bound(times.begin(), times.end(), time);
+  if (after == times.begin()) return 0;
+  const bool is_before = after == times.end() || time - *std::prev(after) < *after - time;
+  return static_cast<int>(after - times.begin()) - (is_before ? 1 : 0);
+}
+
+/// Returns the targets of the second that begins at frame `first`; empty if there is a frame
+/// without a hand or a target without pressure, if no frame is within 20 ms of a plan's time, or if
 /// the recording ends.
-LiveSequence second_from(const RecordingReader& recording, int first) {
-  LiveSequence out;
+std::vector<TargetField> second_from(const RecordingReader& recording, int first) {
   const std::span<const double> times = recording.times();
-  const double begin = times[static_cast<std::size_t>(first)];
-  out.name = fmt::format("from {:.2f} s", begin);
+  const auto time_of = [&](int f) { return times[static_cast<std::size_t>(f)]; };
+  std::vector<TargetField> out;
   TargetField raster;
-  for (int f = first; f < recording.frames() && out.targets.size() < kPlans; ++f) {
-    const TargetFrame frame = recording.frame(f);
-    if (frame.patches.empty()) return {};
-    const double due = begin + kPlan * static_cast<double>(out.targets.size());
-    if (times[static_cast<std::size_t>(f)] < due - 0.25 * kPlan) continue;
-    if (out.targets.empty()) raster = raster_over(frame.patches[0]);
-    resample(frame.patches[0], raster);
+  for (int k = 0, f = first; k < kLivePlans; ++k) {
+    const double due = time_of(first) + kPlan * k;
+    const int wanted = frame_at(times, due);
+    if (std::abs(time_of(wanted) - due) > 0.5 * kPlan) return {};
+    TargetFrame frame;
+    for (; f <= wanted; ++f) {
+      frame = recording.frame(f);
+      if (frame.patches.empty()) return {};
+    }
+    if (frame.patches.empty()) return {};  // the frame of the plan before
+    if (k == 0) raster = raster_over(frame.patches[0]);
+    take_pressure(frame.patches[0], raster);
     if (!(max_pressure(raster) > 0.0)) return {};
-    out.targets.push_back(raster);
+    out.push_back(raster);
   }
-  return out.targets.size() == kPlans ? out : LiveSequence();
+  return out;
 }
 
 }  // namespace
 
 std::vector<LiveSequence> recorded_sequences(const std::string& path, int most) {
   const RecordingReader recording(path);
+  const std::span<const double> times = recording.times();
   std::vector<LiveSequence> all;
-  for (int f = 0; f < recording.frames();) {
-    LiveSequence one = second_from(recording, f);
-    const bool found = !one.targets.empty();
-    const double end = recording.times()[static_cast<std::size_t>(f)] + kPlan * kPlans;
-    if (found) all.push_back(std::move(one));
-    for (++f; found && f < recording.frames();) {
-      if (recording.times()[static_cast<std::size_t>(f)] >= end) break;
+  for (std::size_t f = 0; f < times.size();) {
+    std::vector<TargetField> targets = second_from(recording, static_cast<int>(f));
+    if (targets.empty()) {
       ++f;
+      continue;
     }
+    const double begin = times[f];
+    all.push_back({fmt::format("from {:.2f} s", begin), std::move(targets)});
+    while (f < times.size() && times[f] < begin + (kLivePlans - 0.5) * kPlan) ++f;
   }
-  if (all.empty())
-    throw InputError(fmt::format("{}: no second has pressure on a hand in every frame", path));
-  const auto size = all.size(), wanted = std::min(size, static_cast<std::size_t>(most));
+  if (all.empty()) {
+    throw InputError(fmt::format(
+        "{}: no second has a hand with pressure in every frame, and 25 frames or more", path));
+  }
+  const std::size_t size = all.size(),
+                    wanted = most > 0 ? std::min(size, static_cast<std::size_t>(most)) : size;
   std::vector<LiveSequence> some;
   for (std::size_t i = 0; i < wanted; ++i)
     some.push_back(std::move(all[(2 * i + 1) * size / (2 * wanted)]));

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "felt/recorded.hpp"
 #include "prostm/fields/felt_fields.hpp"
 #include "prostm/io/recorder.hpp"
@@ -24,13 +26,14 @@ TargetField sloped(int shift, double more) {
   return field;
 }
 
-/// Records frames every 20 ms; those in `without` have no hand.
-std::string recorded(const test::TemporaryFolder& folder, int frames, int without) {
+/// Records frames, by default every 20 ms; the one with index `without` has no hand.
+std::string recorded(const test::TemporaryFolder& folder, int frames, int without,
+                     double apart = 0.02) {
   const std::string path = folder.file("run.h5");
   Recorder recorder(path, {});
   for (int i = 0; i < frames; ++i) {
     TargetFrame frame;
-    frame.time = 0.02 * i;
+    frame.time = apart * i;
     if (i != without) frame.patches.push_back(sloped(i % 3, 0.01 * i));
     HandFrame hands;
     hands.time = frame.time;
@@ -43,7 +46,7 @@ std::string recorded(const test::TemporaryFolder& folder, int frames, int withou
 TEST(FeltLab, RecordedSequencesHaveOneRasterAndTheRecordedPressure) {
   const test::TemporaryFolder folder;
   const auto all = recorded_sequences(recorded(folder, 170, 60), 8);
-  // 0 to 1 s, and from the frame after the gap at 1.2 s to 2.2 s; the third second does not end
+  // 0 to 1 s, and two seconds from the frame after the gap at 1.2 s
   ASSERT_EQ(all.size(), 3u);
   EXPECT_EQ(all[1].name, "from 1.22 s");
   for (const LiveSequence& sequence : all) {
@@ -67,7 +70,28 @@ TEST(FeltLab, ARecordingWithoutAWholeSecondIsRejected) {
   const test::TemporaryFolder folder;
   const std::string path = recorded(folder, 60, 30);
   EXPECT_THAT(test::input_error([&] { recorded_sequences(path, 8); }),
-              testing::HasSubstr("no second has pressure on a hand in every frame"));
+              testing::HasSubstr("no second has a hand with pressure in every frame"));
+}
+
+TEST(FeltLab, ARecordingWithFewerFramesThanPlansIsRejected) {
+  const test::TemporaryFolder folder;
+  const std::string path = recorded(folder, 60, -1, 0.1);
+  EXPECT_THAT(test::input_error([&] { recorded_sequences(path, 0); }),
+              testing::HasSubstr("25 frames or more"));
+}
+
+TEST(FeltLab, EachPlanGetsTheNearestFrame) {
+  const test::TemporaryFolder folder;
+  const auto all = recorded_sequences(recorded(folder, 40, -1, 1.0 / 30.0), 0);
+  ASSERT_EQ(all.size(), 1u);
+  const auto& targets = all[0].targets;
+  const auto middle = targets[0].index(targets[0].rows / 2, targets[0].cols / 2);
+  for (int k = 0; k < kLivePlans; ++k) {
+    const int nearest = static_cast<int>(std::lround(0.04 * k * 30.0));
+    const double more =
+        targets[static_cast<std::size_t>(k)].pressure[middle] - targets[0].pressure[middle];
+    ASSERT_NEAR(more, 0.01 * nearest, 1e-6) << k;
+  }
 }
 
 }  // namespace
