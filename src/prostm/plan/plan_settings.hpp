@@ -46,7 +46,7 @@ struct PlanSettings {
   /// is not a setting in files.
   double felt_weight = 0.0;
   bool felt_points = false;  ///< with felt_weight: whether the points of paths move, too
-  /// For preset felt: lack of felt shape (W3) that a strength 2.7 times as high is worth, (P25).
+  /// For preset felt: 1 − S_8.5 of the percept that a strength 2.7 times as high is worth, (P25).
   double strength_weight = 0.1;
   int fit_samples = 28;          ///< N in the search of best, 8..64; plans have 2 N, at most 64
   double fit_hysteresis = 0.03;  ///< share of the cost that a new set of paths must save
