@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "felt/front.hpp"
 #include "felt/kept.hpp"
 #include "felt/live.hpp"
 #include "felt/picture.hpp"
@@ -17,6 +18,8 @@ namespace {
 
 using namespace prostm;
 using namespace prostm::bench;
+
+constexpr std::size_t kChartsInRow = 2;
 
 /// Keeps the named ones, in their original order; all if no name is given.
 template <class Named>
@@ -66,7 +69,7 @@ int main(int argc, char** argv) {
   Program program("how well plans are felt, by the array's own field");
   std::vector<std::string> sets = {"gallery", "scout", "plumes", "new"}, only_ways, only_skins,
                            only_disturbances;
-  std::string figure, keep, recording;
+  std::string figure, front, keep, recording;
   int most = 0, threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   bool each = false, quick = false, live = false;
   program.option("--set", sets,
@@ -86,8 +89,11 @@ int main(int argc, char** argv) {
                  "keep judgements of plans in this file, and use those in it; remove it when "
                  "emission, acoustics or skin have changed");
   program.option("--figure", figure, "draw fields of the last set, and their percepts");
+  program.option("--front", front, "draw lack over strength of the ways, a chart for each set");
   return program.run(argc, argv, [&] {
-    if (!figure.empty()) check_figure(figure);
+    for (const std::string& picture : {figure, front}) {
+      if (!picture.empty()) check_figure(picture);
+    }
     const TransducerArray array = usx_array();
     std::vector<Way> all_ways = ways(array);
     std::vector<Skin> all_skins = skins();
@@ -120,6 +126,7 @@ int main(int argc, char** argv) {
       add_rows(judged.back(), rows);
       if (!figure.empty() && name == sets.back()) draw_felt(judged.back(), fields, figure);
     }
+    if (!front.empty()) draw_charts(front_charts(judged), front, kChartsInRow);
     if (judged.size() > 1) print_tables(pooled("all of these sets", judged));
     return rows;
   });

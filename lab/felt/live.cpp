@@ -10,6 +10,7 @@
 #include "felt_time/felt_live.hpp"
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/fields/fields.hpp"
+#include "prostm/plan/detail/fit/felt/path_count.hpp"
 
 namespace prostm::bench {
 namespace {
@@ -42,10 +43,13 @@ LiveScores score_run(const TransducerArray& array, const LiveSequence& sequence,
   }
   LiveScores out;
   judge_loops(array, way, plans, out);
-  const auto points_of = [](const Plan& plan) { return plan.paths.size() + plan.foci.size(); };
-  for (std::size_t i = 1; i < plans.size(); ++i)
-    out.changes += points_of(plans[i].plan) != points_of(plans[i - 1].plan) ? 1.0 : 0.0;
   LiveSettings settings;
+  std::vector<std::size_t> points;
+  for (const LivePlan& one : plans) points.push_back(one.plan.paths.size() + one.plan.foci.size());
+  const double seconds = static_cast<double>(plans.size()) * settings.interval;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    out.changes += points[i] != points[i - 1] ? 1.0 / seconds : 0.0;
+  out.hasty = count_hasty(points, sequence.targets, settings.interval) / seconds;
   settings.emit.foci = static_cast<int>(foci);
   settings.emit.power_limit = static_cast<double>(foci);  // only the array limits the power
   const auto method = plans[0].plan.foci.empty() ? Method::ProStm : Method::Am;
@@ -54,7 +58,6 @@ LiveScores score_run(const TransducerArray& array, const LiveSequence& sequence,
   felt_live(
       method, plans, settings, array, skin, pool, [](std::size_t, std::size_t) { return true; },
       felt);
-  out.changes /= static_cast<double>(plans.size()) * settings.interval;
   out.live = felt.metrics.skill_8;
   out.window = std::accumulate(felt.window_skill_8.begin(), felt.window_skill_8.end(), 0.0) /
                static_cast<double>(felt.window_skill_8.size());
@@ -83,14 +86,34 @@ std::string line(const std::vector<LiveScores>& own, const std::vector<LiveScore
   };
   return fmt::format(
       "{:>6.3f} {:>6.3f} {:>6.3f} {:>6.2f} {:>6} {:>6.3f} {:>6.2f} {:>6} {:>7.2f} {:>6.3f} "
-      "{:>8.2f}",
+      "{:>8.2f} {:>6.2f}",
       of(&LiveScores::alone), of(&LiveScores::loop), of(&LiveScores::live), lack(&LiveScores::live),
       left(&LiveScores::live), of(&LiveScores::window), lack(&LiveScores::window),
       left(&LiveScores::window), 1e6 * of(&LiveScores::intensity), of(&LiveScores::faded),
-      of(&LiveScores::changes));
+      of(&LiveScores::changes), of(&LiveScores::hasty));
 }
 
 }  // namespace
+
+int count_hasty(const std::vector<std::size_t>& points, const std::vector<TargetField>& targets,
+                double interval) {
+  constexpr double kHold = 1.0;  // [s]
+  planning::RegionCounter counter(targets[0].size());
+  int hasty = 0, regions = 0;
+  bool is_held = false;  // since the last change of the points
+  double changed = 0.0;  // time of that change [s]
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double time = static_cast<double>(i) * interval;
+    const int now = counter.count(targets[i], max_pressure(targets[i]));
+    if (now != regions || time - changed >= kHold) is_held = false;
+    regions = now;
+    if (i == 0 || points[i] == points[i - 1]) continue;
+    hasty += is_held ? 1 : 0;
+    is_held = true;
+    changed = time;
+  }
+  return hasty;
+}
 
 std::vector<LiveSequence> live_sequences(bool is_still, int most) {
   using fields::Pattern;
@@ -140,9 +163,10 @@ void print_live(const LiveSet& set, bool each) {
       "\n{}, {} sequences: S_8.5 of √e, plans alone and of the run as loops, then in a live run "
       "against the mean target,\nand each 40 ms against its own. lack: 1 - S_8.5 over that of {}. "
       "left: share of the gain of loops over it.\nchanges: of the number of focal points, per "
-      "second\n{:<20} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6} {:>8}\n",
+      "second; hasty: within a second\nof another, without a change of the number of regions"
+      "\n{:<20} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6} {:>8} {:>6}\n",
       set.name, set.sequences.size(), set.ways[0], "", "alone", "loops", "live", "lack", "left",
-      "40 ms", "lack", "left", "√E µm", "faded", "changes");
+      "40 ms", "lack", "left", "√E µm", "faded", "changes", "hasty");
   for (std::size_t w = 0; w < set.ways.size(); ++w)
     fmt::print("{:<20} {}\n", set.ways[w], line(set.scores[w], set.scores[0]));
   if (!each) return;

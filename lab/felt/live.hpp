@@ -33,7 +33,15 @@ struct LiveScores {
   double intensity = 0.0;  ///< √E of the run [m]
   double faded = 0.0;      ///< share of samples in a fade
   double changes = 0.0;    ///< changes of the number of focal points, per second
+  double hasty = 0.0;      ///< of these, the ones that count_hasty() counts, per second
 };
+
+/// Counts changes of the number of focal points that follow another within a second, without a
+/// change of the number of the target's regions after that one: connected cells with at least a
+/// quarter of the largest pressure. @param interval time between plans [s]. @param points of each
+/// plan. @param targets as many.
+int count_hasty(const std::vector<std::size_t>& points, const std::vector<TargetField>& targets,
+                double interval);
 
 /// A set of sequences, scored in several ways: [way][sequence]. Ways are compared with the first.
 struct LiveSet {

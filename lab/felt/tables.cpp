@@ -34,7 +34,7 @@ void print_felt(const JudgedSet& set) {
       "S_0", "corr.", "overl.", "worst", "on");
   for (std::size_t w = 0; w < set.ways.size(); ++w) {
     const std::vector<Judged>& way = set.results[w];
-    const Compared c = compare(each(way, skill), each(set.results[0], skill));
+    const Compared c = compare_shape(set, w);
     fmt::print(
         "{:<20} {:>6.3f} {:>+7.3f} ± {:>6.3f} {:>6.2f} {:>6} {:>6.3f} {:>6.3f} {:>6.3f} {:>7.2f}",
         set.ways[w], c.mean, c.more, c.error, c.lack, c.worse,
@@ -78,27 +78,18 @@ void print_readouts(const JudgedSet& set) {
   }
 }
 
-/// Prints shape and strength side by side: means over the fields, relative to the first way, and
-/// the fields where the way is worse in both.
+/// Prints shape and strength side by side.
 void print_strength(const JudgedSet& set) {
-  const auto strongest = [](const Judged& j) { return j.strongest; };
-  const std::vector<double> first = each(set.results[0], strongest);
   fmt::print(
       "\n{}: felt shape and strength, the largest √e; ratios of means to those of {}\n{:<20} {:>6} "
       "{:>6} {:>9} {:>6} {:>6} {:>13}\n",
       set.name, set.ways[0], "", "S_8.5", "lack", "strongest", "ratio", "least", "worse in both");
   for (std::size_t w = 0; w < set.ways.size(); ++w) {
-    const std::vector<Judged>& way = set.results[w];
-    const std::vector<double> own = each(way, strongest);
-    double least = std::numeric_limits<double>::infinity();
-    int worse = 0;
-    for (std::size_t f = 0; f < own.size(); ++f) {
-      least = std::min(least, own[f] / first[f]);
-      worse += own[f] < first[f] && skill(way[f]) < skill(set.results[0][f]) ? 1 : 0;
-    }
-    const Compared c = compare(each(way, skill), each(set.results[0], skill));
+    const Compared shape = compare_shape(set, w);
+    const Strength strength = compare_strength(set, w);
     fmt::print("{:<20} {:>6.3f} {:>6.2f} {:>6.3f} µm {:>6.2f} {:>6.2f} {:>13}\n", set.ways[w],
-               c.mean, c.lack, 1e6 * mean(own), mean(own) / mean(first), least, worse);
+               shape.mean, shape.lack, 1e6 * strength.mean, strength.ratio, strength.least,
+               strength.worse_in_both);
   }
 }
 
@@ -157,7 +148,7 @@ void print_disturbances(const JudgedSet& set) {
     if (set.results[w][0].disturbed.empty()) return std::string("-");
     const auto disturbed = [d](const Judged& j) { return j.disturbed[d]; };
     const double own = mean(each(set.results[w], disturbed));
-    const Compared calm = compare(each(set.results[w], skill), each(set.results[0], skill));
+    const Compared calm = compare_shape(set, w);
     const double gain = calm.more;
     if (gain <= 2.0 * calm.error) return fmt::format("{:.3f}", own);
     return fmt::format("{:.3f} ({:.2f}, {:.2f})", own,
@@ -185,6 +176,24 @@ Compared compare(const std::vector<double>& own, const std::vector<double>& firs
   }
   const auto n = static_cast<double>(own.size());
   if (own.size() > 1) out.error = std::sqrt(squares / (n - 1.0) / n);
+  return out;
+}
+
+Compared compare_shape(const JudgedSet& set, std::size_t way) {
+  return compare(each(set.results[way], skill), each(set.results[0], skill));
+}
+
+Strength compare_strength(const JudgedSet& set, std::size_t way) {
+  const auto strongest = [](const Judged& j) { return j.strongest; };
+  const std::vector<double> own = each(set.results[way], strongest),
+                            first = each(set.results[0], strongest);
+  Strength out{.mean = mean(own), .ratio = mean(own) / mean(first), .least = own[0] / first[0]};
+  for (std::size_t f = 0; f < own.size(); ++f) {
+    out.least = std::min(out.least, own[f] / first[f]);
+    const bool weaker = own[f] < first[f],
+               poorer = skill(set.results[way][f]) < skill(set.results[0][f]);
+    out.worse_in_both += weaker && poorer ? 1 : 0;
+  }
   return out;
 }
 

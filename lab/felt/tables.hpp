@@ -29,6 +29,18 @@ struct Compared {
 /// @param own, first S_8.5 of the way and of the first way on each field. @pre not empty, sizes
 /// agree.
 Compared compare(const std::vector<double>& own, const std::vector<double>& first);
+/// Compares the felt shape of a way with that of the first. @param way < the number of ways.
+Compared compare_shape(const JudgedSet& set, std::size_t way);
+
+/// Strength, the largest √e, compared with that of the first way.
+struct Strength {
+  double mean = 0.0;      ///< over the fields [m]
+  double ratio = 1.0;     ///< of the means
+  double least = 1.0;     ///< ratio on a field
+  int worse_in_both = 0;  ///< fields that are weaker and have a lower S_8.5
+};
+/// @param way < the number of ways.
+Strength compare_strength(const JudgedSet& set, std::size_t way);
 
 /// Returns the fields of several sets as one set. @pre they have the same ways, skins and
 /// disturbances.

@@ -113,11 +113,11 @@ std::vector<Way> ways(const TransducerArray& array) {
     all.push_back(chosen_paths(fmt::format("1 to 4 paths, {:.1f}", weight), quick, weight, array));
   }
   all.push_back(chosen_paths("1 to 4 paths, moved", by_points, 0.1, array));
-  for (const double weight : {0.0, 0.1, 0.3}) {
+  for (const double weight : {0.0, 0.03, 0.1, 0.3, 1.0}) {
     PlanSettings preset;
     preset.preset = Preset::Felt;
     preset.strength_weight = weight;
-    all.push_back(pro_stm(fmt::format("preset felt, {:.1f}", weight), preset, array));
+    all.push_back(pro_stm(fmt::format("preset felt, {}", weight), preset, array));
   }
   PlanSettings in_time;
   in_time.preset = Preset::Felt;

@@ -84,5 +84,22 @@ TEST(FeltLab, APlannerContinuesFromThePreviousPlan) {
   }
 }
 
+TEST(FeltLab, CountsHastyChangesUnlessRegionsChange) {
+  TargetField one;
+  one.resize(3, 9);
+  one.skin.assign(one.size(), 1);
+  one.pressure[one.index(1, 1)] = 100.0;
+  TargetField two = one, faint = one;
+  two.pressure[two.index(1, 6)] = 30.0;
+  faint.pressure[faint.index(1, 6)] = 20.0;
+  const double interval = 0.25;
+  EXPECT_EQ(count_hasty({4, 1, 1, 1}, {one, one, one, one}, interval), 0);
+  EXPECT_EQ(count_hasty({4, 1, 2, 1}, {one, one, one, one}, interval), 2);
+  EXPECT_EQ(count_hasty({4, 1, 2, 2}, {one, one, two, two}, interval), 0);
+  EXPECT_EQ(count_hasty({4, 1, 1, 2}, {one, one, two, one}, interval), 0);
+  EXPECT_EQ(count_hasty({4, 1, 2, 1}, {one, one, faint, one}, interval), 2);
+  EXPECT_EQ(count_hasty({4, 1, 1, 1, 1, 2}, std::vector<TargetField>(6, one), interval), 0);
+}
+
 }  // namespace
 }  // namespace prostm::bench

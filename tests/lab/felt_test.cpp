@@ -9,6 +9,7 @@
 
 #include "felt/chosen_paths.hpp"
 #include "felt/field_sets.hpp"
+#include "felt/front.hpp"
 #include "felt/judge.hpp"
 #include "felt/kept.hpp"
 #include "felt/tables.hpp"
@@ -258,6 +259,53 @@ TEST(FeltTables, PairFields) {
   EXPECT_EQ(c.worse, 1);
   // differences 0.1, -0.1, 0.3: standard deviation 0.2
   EXPECT_NEAR(c.error, 0.2 / std::sqrt(3.0), 1e-12);
+}
+
+/// Two ways on two fields, by S_8.5 and strength.
+JudgedSet two_by_two() {
+  const auto judged = [](double skill_8, double strongest) {
+    Judged out;
+    out.felt.skill_8 = skill_8;
+    out.strongest = strongest;
+    return out;
+  };
+  return {"test",
+          {"a", "b"},
+          {"first", "other, 0.1"},
+          {"nominal"},
+          {},
+          {{judged(0.8, 0.2e-6), judged(0.6, 0.4e-6)}, {judged(0.9, 0.8e-6), judged(0.5, 0.1e-6)}}};
+}
+
+TEST(FeltTables, CompareShapeAndStrength) {
+  const JudgedSet set = two_by_two();
+  EXPECT_NEAR(compare_shape(set, 1).lack, 1.0, 1e-12);
+  EXPECT_EQ(compare_shape(set, 1).worse, 1);
+  const Strength strength = compare_strength(set, 1);
+  EXPECT_NEAR(strength.mean, 0.45e-6, 1e-18);
+  EXPECT_NEAR(strength.ratio, 1.5, 1e-12);
+  EXPECT_NEAR(strength.least, 0.25, 1e-12);
+  EXPECT_EQ(strength.worse_in_both, 1);
+  EXPECT_EQ(compare_strength(set, 0).ratio, 1.0);
+}
+
+TEST(FeltFront, JoinsWaysOfOneKindByStrength) {
+  JudgedSet set = two_by_two();
+  set.ways.emplace_back("other, 0");
+  set.results.push_back({set.results[0][0], set.results[0][0]});
+  const std::vector<Chart> charts = front_charts({set, set});
+  ASSERT_EQ(charts.size(), 2u);
+  ASSERT_EQ(charts[0].series.size(), 2u);
+  const ChartSeries &first = charts[0].series[0], &other = charts[0].series[1];
+  EXPECT_EQ(first.name, "first");
+  EXPECT_EQ(first.x, std::vector<double>({1.0}));
+  EXPECT_EQ(first.y, std::vector<double>({1.0}));
+  EXPECT_EQ(other.name, "other");
+  EXPECT_EQ(other.labels, std::vector<std::string>({"0", "0.1"}));
+  EXPECT_NEAR(other.x[0], 0.4 / 0.6, 1e-12);
+  EXPECT_NEAR(other.x[1], 0.9 / 0.6, 1e-12);
+  EXPECT_NEAR(other.y[0], 0.4 / 0.6, 1e-12);
+  EXPECT_NEAR(other.y[1], 1.0, 1e-12);
 }
 
 }  // namespace
