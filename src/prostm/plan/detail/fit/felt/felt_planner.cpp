@@ -19,7 +19,6 @@ constexpr FeltEffort kMovingOn = {8, 0.3F}, kMovedOn = {6, 0.5F};
 constexpr int kRefiningRounds = 4;    // of moving points and mending paths
 constexpr int kPlansPerRival = 3;     // plans of a sequence for each comparison
 constexpr float kHysteresis = 0.04F;  // cost that another candidate must save
-constexpr float kLost = 0.05F;        // cost by which a sequence may exceed its least
 
 /// Settings of the felt steps, whose cost is that of the percept alone. @param points whether
 /// points move.
@@ -207,27 +206,40 @@ void FeltPlanner::end_quickly(const PatchTask& task, PlanStats& stats) {
   times_.ending = updated_mean(times_.ending, timer.seconds());
 }
 
+/// Makes all plans anew. @param paths their number; 0: any.
+void FeltPlanner::make_anew(const PatchTask& task, int paths, PlanStats& stats) {
+  compare(task, paths, stats);
+  if (!refine_candidates(task, stats)) end_quickly(task, stats);
+  rate(task, stats);
+  least_cost_ = cost_;
+}
+
+/// Sets cost_ to that of the chosen plan.
+void FeltPlanner::rate(const PatchTask& task, PlanStats& stats) {
+  const StageTimer timer;
+  Candidate& chosen = candidates_[chosen_];
+  rough_.set_target(task.target, task.maximum, chosen.fit.sigma());
+  cost_ = cost(chosen, rough_);
+  stats.refine += timer.seconds();
+}
+
 void FeltPlanner::plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats) {
   timer_.restart();
   fine_.move(kMmPerMetre * (origin_ - task.target.origin));
   origin_ = task.target.origin;
   count_.begin(regions_.count(task.target, task.maximum), task.time);
   const bool follows = chosen_ != kNone && candidates_[chosen_].paths <= task.paths;
-  const bool continues = follows && cost_ <= least_cost_ + kLost;
-  if (continues) {
+  const int paths = follows && !count_.may_change() ? candidates_[chosen_].paths : 0;
+  if (follows && !is_lost()) {
     continue_plan(task, stats);
+    rate(task, stats);
+    if (is_lost() && has_time(task, times_.refining)) make_anew(task, paths, stats);
+    least_cost_ = std::min(least_cost_, cost_);
   } else {
-    compare(task, follows && !count_.may_change() ? candidates_[chosen_].paths : 0, stats);
-    if (!refine_candidates(task, stats)) end_quickly(task, stats);
+    make_anew(task, paths, stats);
   }
-  const StageTimer timer;
-  Candidate& chosen = candidates_[chosen_];
-  chosen.fit.append(task, plan, stats);
-  count_.take(chosen.paths);
-  rough_.set_target(task.target, task.maximum, chosen.fit.sigma());
-  cost_ = cost(chosen, rough_);
-  least_cost_ = continues ? std::min(least_cost_, cost_) : cost_;
-  stats.refine += timer.seconds();
+  candidates_[chosen_].fit.append(task, plan, stats);
+  count_.take(candidates_[chosen_].paths);
 }
 
 }  // namespace prostm::planning

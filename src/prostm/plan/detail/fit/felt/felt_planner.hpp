@@ -48,6 +48,8 @@ class FeltPlanner : public PatchPlanner {
   bool has_time(const PatchTask& task, double seconds) const {
     return task.budget == 0.0 || timer_.seconds() + seconds <= task.budget;
   }
+  /// Whether the last plan costs so much more than earlier ones that all are made anew.
+  bool is_lost() const { return cost_ > least_cost_ + kLost; }
   float cost(Candidate& candidate, FeltStep& step);
   float plan_roughly(const PatchTask& task, Candidate& candidate, PlanStats& stats);
   void compare(const PatchTask& task, int paths, PlanStats& stats);
@@ -55,6 +57,8 @@ class FeltPlanner : public PatchPlanner {
   bool refine_candidates(const PatchTask& task, PlanStats& stats);
   void continue_plan(const PatchTask& task, PlanStats& stats);
   void end_quickly(const PatchTask& task, PlanStats& stats);
+  void make_anew(const PatchTask& task, int paths, PlanStats& stats);
+  void rate(const PatchTask& task, PlanStats& stats);
 
   const PlanSettings settings_;
   std::vector<Candidate> candidates_;
@@ -71,6 +75,7 @@ class FeltPlanner : public PatchPlanner {
   Vec2 origin_ = Vec2::Zero();  // of the last target [m]
   Loops loops_;
 
+  static constexpr float kLost = 0.05F;  // cost by which a sequence may exceed its least
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 };
 
