@@ -45,11 +45,12 @@ std::vector<std::string> names_of(const std::vector<Named>& all) {
 }
 
 /// Scores live runs of moving and of still targets, or of those of a recording if it is not empty.
-std::vector<Row> live_rows(const TransducerArray& array, const std::vector<Way>& ways, int most,
-                           int threads, bool each, const std::string& recording) {
+std::vector<Row> live_rows(const TransducerArray& array, const std::vector<Way>& ways,
+                           SwitchAt switch_at, int most, int threads, bool each,
+                           const std::string& recording) {
   std::vector<Row> rows;
   const auto score = [&](const std::string& name, const std::vector<LiveSequence>& sequences) {
-    const LiveSet set = score_live(name, array, sequences, ways, threads);
+    const LiveSet set = score_live(name, array, sequences, ways, switch_at, threads);
     print_live(set, each);
     std::fflush(stdout);
     add_live_rows(set, rows);
@@ -69,7 +70,7 @@ int main(int argc, char** argv) {
   Program program("how well plans are felt, by the array's own field");
   std::vector<std::string> sets = {"gallery", "scout", "plumes", "new"}, only_ways, only_skins,
                            only_disturbances;
-  std::string figure, front, keep, recording;
+  std::string figure, front, keep, recording, switch_at = "lap";
   int most = 0, threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   bool each = false, quick = false, live = false;
   program.option("--set", sets,
@@ -81,6 +82,7 @@ int main(int argc, char** argv) {
                "plans that replace one another every 40 ms, felt in time, instead of the sets");
   program.option("--recording", recording,
                  "with --live: seconds of this recording of prostm run, instead of generated ones");
+  program.option("--switch", switch_at, "with --live: when a new plan takes over: lap, now");
   program.flag("--quick", quick, "only the first skin, and no disturbance");
   program.option("--fields", most, "number of fields of each set; 0: all", 0, 1000);
   program.option("--threads", threads, "number of fields that are judged at once", 1, 64);
@@ -104,7 +106,10 @@ int main(int argc, char** argv) {
     if (all_ways[0].is_control)
       throw InputError("the first way is the reference, so it must not be a control");
     if (!recording.empty() && !live) throw InputError("--recording needs --live");
-    if (live) return live_rows(array, all_ways, most, threads, each, recording);
+    if (live) {
+      return live_rows(array, all_ways, from_name<SwitchAt>(switch_at, "switch"), most, threads,
+                       each, recording);
+    }
     if (quick) {
       all_skins.resize(1);
       disturbances.clear();

@@ -33,7 +33,7 @@ void judge_loops(const TransducerArray& array, const Way& way, const std::vector
 }
 
 LiveScores score_run(const TransducerArray& array, const LiveSequence& sequence, const Way& way,
-                     const TimeSkin& skin) {
+                     SwitchAt switch_at, const TimeSkin& skin) {
   std::vector<LivePlan> plans;
   const Planning planning = way.begin(sequence.targets[0]);
   std::size_t foci = 1;
@@ -50,6 +50,7 @@ LiveScores score_run(const TransducerArray& array, const LiveSequence& sequence,
   for (std::size_t i = 1; i < points.size(); ++i)
     out.changes += points[i] != points[i - 1] ? 1.0 / seconds : 0.0;
   out.hasty = count_hasty(points, sequence.targets, settings.interval) / seconds;
+  settings.emit.switch_at = switch_at;
   settings.emit.foci = static_cast<int>(foci);
   settings.emit.power_limit = static_cast<double>(foci);  // only the array limits the power
   const auto method = plans[0].plan.foci.empty() ? Method::ProStm : Method::Am;
@@ -131,7 +132,7 @@ std::vector<LiveSequence> live_sequences(bool is_still, int most) {
 
 LiveSet score_live(const std::string& name, const TransducerArray& array,
                    const std::vector<LiveSequence>& sequences, const std::vector<Way>& ways,
-                   int threads) {
+                   SwitchAt switch_at, int threads) {
   LiveSet set{name, {}, {}, {}};
   for (const Way& way : ways) set.ways.push_back(way.name);
   for (const LiveSequence& sequence : sequences) set.sequences.push_back(sequence.name);
@@ -146,7 +147,7 @@ LiveSet score_live(const std::string& name, const TransducerArray& array,
     for (std::size_t i = next++; i < runs; i = next++) {
       const std::size_t w = i % ways.size(), s = i / ways.size();
       try {
-        set.scores[w][s] = score_run(array, sequences[s], ways[w], skin);
+        set.scores[w][s] = score_run(array, sequences[s], ways[w], switch_at, skin);
       } catch (...) {
         failed[i] = std::current_exception();
       }

@@ -6,6 +6,7 @@
 
 #include "felt/ways.hpp"
 #include "prostm/acoustics/array/array.hpp"
+#include "prostm/emit/emitter.hpp"
 #include "prostm/target/target_field.hpp"
 #include "report.hpp"
 
@@ -51,10 +52,11 @@ struct LiveSet {
 };
 
 /// Scores ways, several runs at once. Steps the skin first, which takes some 10 s.
-/// @param threads ≥ 1. @throws InputError as Judge::judge() does.
+/// @param switch_at when plans take over. @param threads ≥ 1. @throws InputError as Judge::judge()
+/// does.
 LiveSet score_live(const std::string& name, const TransducerArray& array,
                    const std::vector<LiveSequence>& sequences, const std::vector<Way>& ways,
-                   int threads);
+                   SwitchAt switch_at, int threads);
 
 /// Prints a table with a line for each way. @param each whether to add one for each sequence.
 void print_live(const LiveSet& set, bool each);

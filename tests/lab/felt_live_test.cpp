@@ -49,7 +49,8 @@ Way wandering() {
 
 TEST(FeltLab, AConstantRunIsFeltLikeItsLoop) {
   const LiveSequence still{"still", std::vector<TargetField>(12, target())};
-  const LiveSet set = score_live("test", usx_array(), {still}, {steady(), wandering()}, 2);
+  const LiveSet set =
+      score_live("test", usx_array(), {still}, {steady(), wandering()}, SwitchAt::Lap, 2);
   const LiveScores own = set.scores[0][0], other = set.scores[1][0];
   EXPECT_EQ(own.alone, own.loop);
   EXPECT_NEAR(own.live, own.loop, 0.01);
