@@ -91,7 +91,9 @@ TEST(PathCount, MayChangeOnceASecondOrWithTheRegions) {
   PathCount count;
   count.begin(1, 10.0);
   EXPECT_TRUE(count.may_change());
+  EXPECT_EQ(count.paths(), 0);
   count.take(2);
+  EXPECT_EQ(count.paths(), 2);
   count.begin(1, 10.5);
   EXPECT_FALSE(count.may_change());
   count.take(2);
@@ -108,6 +110,8 @@ TEST(PathCount, MayChangeOnceASecondOrWithTheRegions) {
   count.take(1);
   count.begin(2, 0.0);
   EXPECT_TRUE(count.may_change()) << "another recording";
+  count.forget();
+  EXPECT_EQ(count.paths(), 0);
 }
 
 TEST(PlainLoops, HaveTheMomentsOfThePressure) {

@@ -19,6 +19,8 @@ constexpr FeltEffort kMovingOn = {8, 0.3F}, kMovedOn = {6, 0.5F};
 constexpr int kRefiningRounds = 4;    // of moving points and mending paths
 constexpr int kPlansPerRival = 3;     // plans of a sequence for each comparison
 constexpr float kHysteresis = 0.04F;  // cost that another candidate must save
+constexpr float kCountChange =
+    0.02F;  // the same for another number of paths, when all are made anew
 
 /// Settings of the felt steps, whose cost is that of the percept alone. @param points whether
 /// points move.
@@ -101,6 +103,11 @@ float FeltPlanner::cost(Candidate& candidate, FeltStep& step) {
   return rating.lack - static_cast<float>(settings_.strength_weight) * std::log(rating.strength);
 }
 
+/// Returns the cost of changing the number of paths to that of a candidate.
+float FeltPlanner::change_cost(const Candidate& candidate) const {
+  return count_.paths() == 0 || candidate.paths == count_.paths() ? 0.0F : kCountChange;
+}
+
 /// Makes a candidate's plan anew, up to its pressures on few cells. @return its cost.
 float FeltPlanner::plan_roughly(const PatchTask& task, Candidate& candidate, PlanStats& stats) {
   const StageTimer all;
@@ -131,7 +138,7 @@ void FeltPlanner::compare(const PatchTask& task, int paths, PlanStats& stats) {
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     if (candidates_[i].paths > task.paths || (paths > 0 && candidates_[i].paths != paths)) continue;
     if (!rated_.empty() && !has_time(task, times_.comparing + times_.ending)) break;
-    rated_.push_back({plan_roughly(task, candidates_[i], stats), i});
+    rated_.push_back({plan_roughly(task, candidates_[i], stats) + change_cost(candidates_[i]), i});
   }
   std::ranges::sort(rated_, {}, [](const Rated& r) { return std::pair(r.cost, r.candidate); });
   chosen_ = rated_.front().candidate;
@@ -159,7 +166,8 @@ bool FeltPlanner::refine_candidates(const PatchTask& task, PlanStats& stats) {
     if (!has_time(task, times_.refining)) break;
     const StageTimer timer;
     thorough_.forget();
-    const float refined = refine(task, candidates_[rated.candidate], kRefiningRounds, stats);
+    Candidate& candidate = candidates_[rated.candidate];
+    const float refined = refine(task, candidate, kRefiningRounds, stats) + change_cost(candidate);
     times_.refining = updated_mean(times_.refining, timer.seconds());
     if (refined >= least) continue;
     least = refined;

@@ -51,6 +51,7 @@ class FeltPlanner : public PatchPlanner {
   /// Whether the last plan costs so much more than earlier ones that all are made anew.
   bool is_lost() const { return cost_ > least_cost_ + kLost; }
   float cost(Candidate& candidate, FeltStep& step);
+  float change_cost(const Candidate& candidate) const;
   float plan_roughly(const PatchTask& task, Candidate& candidate, PlanStats& stats);
   void compare(const PatchTask& task, int paths, PlanStats& stats);
   float refine(const PatchTask& task, Candidate& candidate, int rounds, PlanStats& stats);

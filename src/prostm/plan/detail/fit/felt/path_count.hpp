@@ -34,6 +34,8 @@ class PathCount {
   void begin(int regions, double time);
   /// Returns whether the number may change.
   bool may_change() const { return time_ >= held_until_; }
+  /// Returns the number of paths of the last plan; 0 before the first.
+  int paths() const { return paths_; }
   /// Takes the number of paths of the plan.
   void take(int paths);
 
