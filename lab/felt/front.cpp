@@ -19,11 +19,12 @@ struct FrontLine {
   std::vector<FrontPoint> points;
 };
 
-/// Splits the name of a way into that of its line, and the label of its point.
+/// Splits the name of a way into that of its line, and the label of its point, which is short.
 std::pair<std::string, std::string> parts_of(const std::string& way) {
   const std::size_t comma = way.rfind(", ");
   if (comma == std::string::npos) return {way, ""};
-  return {way.substr(0, comma), way.substr(comma + 2)};
+  const std::size_t label = comma + 2;
+  return {way.substr(0, comma), way.substr(label, way.find(' ', label) - label)};
 }
 
 /// Returns the lines of a set, in the order of their first ways, each by strength.

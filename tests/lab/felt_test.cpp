@@ -291,7 +291,7 @@ TEST(FeltTables, CompareShapeAndStrength) {
 
 TEST(FeltFront, JoinsWaysOfOneKindByStrength) {
   JudgedSet set = two_by_two();
-  set.ways.emplace_back("other, 0");
+  set.ways.emplace_back("other, 0 paths");
   set.results.push_back({set.results[0][0], set.results[0][0]});
   const std::vector<Chart> charts = front_charts({set, set});
   ASSERT_EQ(charts.size(), 2u);
