@@ -163,6 +163,31 @@ TEST(FeltLoss, MeasuresALackIndependentlyOfTheUnit) {
   EXPECT_NEAR(lack.loudness(), 1000.0 * loudness, 1e-9 * loudness);
 }
 
+template <class Real>
+void expect_finite_in_silence() {
+  FeltLoss<Real> loss(2, kFeltCells, kSources, kWeights, true);
+  loss.set_target(cells_of(fields::Pattern::Letter));
+  const Sources<Real> sources(1, kSources);
+  loss.set_sources(skins<Real>(), sources.all);
+  const Real felt = loss.keep_loudness(sources.amplitude, 1);
+  const std::vector<Real> silence(kSources);
+  const Real silent = loss.evaluate(silence);
+  EXPECT_TRUE(std::isfinite(silent));
+  EXPECT_GT(silent, felt);
+  std::vector<Real> gradient(kSources), x(kSources), y(kSources), turn(kSources);
+  loss.gradient(gradient);
+  loss.slide(silence, x, y);
+  loss.turn(silence, 2, turn);
+  for (const auto& values : {gradient, x, y, turn}) {
+    for (const Real value : values) EXPECT_TRUE(std::isfinite(value));
+  }
+}
+
+TEST(FeltLoss, IsFiniteIfNothingIsFelt) {
+  expect_finite_in_silence<float>();
+  expect_finite_in_silence<double>();
+}
+
 TEST(FeltLoss, ItsCoarseLackIsTheLossWithoutOtherTerms) {
   const Judge judge(fields::Pattern::FourPlumes);
   const Sources<double> sources(3, kSources);

@@ -12,6 +12,7 @@ namespace prostm {
 namespace {
 
 constexpr double kLeastPercept = 1e-3;   // smoothing of √e at 0, relative to its rms
+constexpr double kSilence = 1e-18;       // e where no source is felt [µm²], so that 1/e is finite
 constexpr double kLeastDistance = 1e-6;  // [mm]
 
 /// Returns the upper bound of a part of a pair, a sum of two products.
@@ -149,7 +150,7 @@ Real FeltLoss<Real>::Impl::evaluate(std::size_t number, std::optional<Real> keep
   auto e = energy.head(n), root = s.percept.head(n), d_root = by_root.head(n),
        d_energy = by_energy.head(n);
   for (Eigen::Index x = 0; x < n; ++x) {
-    e[x] = 0;
+    e[x] = static_cast<Real>(kSilence);
     for (const Real part : felt[row(x, number)].part) e[x] += per_square * part * part;
   }
   const Real whole = lack.area().dot(e);

@@ -53,7 +53,8 @@ class FeltLoss {
   /// Sets the sources of pressure. @pre as many skins as in the constructor.
   void set_sources(std::span<const FocusResponse<Real>> skins,
                    std::span<const FeltSource<Real>> sources);
-  /// Computes the loss (W4). @param amplitude signed amplitude of each source; not all 0.
+  /// Computes the loss (W4), which is finite for silence, too. @param amplitude signed amplitude of
+  /// each source.
   Real evaluate(std::span<const Real> amplitude);
   /// Same as evaluate(), and makes `times` times this loudness, on each skin, the one to keep.
   Real keep_loudness(std::span<const Real> amplitude, Real times);
