@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
   Program program("how well plans are felt, by the array's own field");
   std::vector<std::string> sets = {"gallery", "scout", "plumes", "new"}, only_ways, only_skins,
                            only_disturbances;
-  std::string figure, front, keep, recording, switch_at = "lap";
+  std::string figure, front, keep, recording, switch_name = "lap";
   int most = 0, threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   bool each = false, quick = false, live = false;
   program.option("--set", sets,
@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
                "plans that replace one another every 40 ms, felt in time, instead of the sets");
   program.option("--recording", recording,
                  "with --live: seconds of this recording of prostm run, instead of generated ones");
-  program.option("--switch", switch_at, "with --live: when a new plan takes over: lap, now");
+  program.option("--switch", switch_name, "with --live: when a new plan takes over: lap, now");
   program.flag("--quick", quick, "only the first skin, and no disturbance");
   program.option("--fields", most, "number of fields of each set; 0: all", 0, 1000);
   program.option("--threads", threads, "number of fields that are judged at once", 1, 64);
@@ -105,11 +105,12 @@ int main(int argc, char** argv) {
     keep_only(disturbances, only_disturbances, "disturbance");
     if (all_ways[0].is_control)
       throw InputError("the first way is the reference, so it must not be a control");
+    const auto switch_at = from_name<SwitchAt>(switch_name, "switch");
     if (!recording.empty() && !live) throw InputError("--recording needs --live");
-    if (live) {
-      return live_rows(array, all_ways, from_name<SwitchAt>(switch_at, "switch"), most, threads,
-                       each, recording);
-    }
+    if (switch_at != SwitchAt::Lap && !live) throw InputError("--switch needs --live");
+    if (live && !(figure.empty() && front.empty()))
+      throw InputError("--figure and --front draw sets of fields: leave out --live");
+    if (live) return live_rows(array, all_ways, switch_at, most, threads, each, recording);
     if (quick) {
       all_skins.resize(1);
       disturbances.clear();

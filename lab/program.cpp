@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <stdexcept>
 
 #include "prostm/core/input_error.hpp"
 
@@ -81,6 +82,8 @@ int Program::run(int argc, char** argv, const std::function<std::vector<Row>()>&
   } catch (const CLI::ParseError& error) {
     fmt::print(stderr, "{}: {}\n", argv[0], error.what());
   } catch (const InputError& error) {
+    fmt::print(stderr, "{}: {}\n", argv[0], error.what());
+  } catch (const std::invalid_argument& error) {  // a name or a setting
     fmt::print(stderr, "{}: {}\n", argv[0], error.what());
   }
   return 2;
