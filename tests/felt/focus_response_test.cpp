@@ -73,7 +73,7 @@ TEST(FocusResponse, HasTheDerivativesOfItsValues) {
     const auto here = table.at(r), before = table.at(r - h), after = table.at(r + h);
     for (std::size_t i = 0; i < kFeltParts; ++i) {
       const double difference = (after.value[i] - before.value[i]) / (2.0 * h);
-      ASSERT_NEAR(here.slope[i], difference, 1e-7 * table.row[0].value[0]) << r;
+      ASSERT_NEAR(here.slope[i], difference, 1e-7 * table.largest) << r;
     }
   }
 }
@@ -82,8 +82,9 @@ TEST(FocusResponse, FarAwayEqualsTheLastTabulatedDistance) {
   FocusResponseMaker maker;
   FocusResponse<float> table;
   maker.make(SkinModel(SkinSettings()), kSigma, kPeriod, table);
-  EXPECT_EQ(table.at(1e4F).value, table.row.back().value);
-  EXPECT_EQ(table.at(0.0F).value, table.row.front().value);
+  constexpr double kLast = FocusResponse<float>::kStep * (FocusResponse<float>::kDistances - 1);
+  EXPECT_EQ(table.at(1e4F).value, table.at(static_cast<float>(kLast)).value);
+  EXPECT_EQ(table.at(0.0F).value, table.cubic.front().by_power[0]);
 }
 
 TEST(FirstFeltHarmonic, IsTheFirstFrom90Hz) {

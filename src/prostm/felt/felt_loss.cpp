@@ -11,20 +11,15 @@
 namespace prostm {
 namespace {
 
-constexpr double kLeastPercept = 1e-3;   // smoothing of √e at 0, relative to its rms
-constexpr double kSilence = 1e-18;       // e where no source is felt [µm²], so that 1/e is finite
-constexpr double kLeastDistance = 1e-6;  // [mm]
+constexpr double kLeastPercept = 1e-3;  // smoothing of √e at 0, relative to its rms
+constexpr double kSilence = 1e-18;      // e where no source is felt [µm²], so that 1/e is finite
 
 /// Returns the upper bound of a part of a pair, a sum of two products.
 template <class Real>
 Real largest(std::span<const FocusResponse<Real>> skins,
              std::span<const FeltSource<Real>> sources) {
   Real table = 0, source = 0;
-  for (const FocusResponse<Real>& skin : skins) {
-    for (const auto& row : skin.row) {
-      for (const Real value : row.value) table = std::max(table, std::abs(value));
-    }
-  }
+  for (const FocusResponse<Real>& skin : skins) table = std::max(table, skin.largest);
   for (const FeltSource<Real>& at : sources) {
     for (const Real part : at.spectrum) source = std::max(source, std::abs(part));
   }
@@ -62,9 +57,9 @@ struct FeltLoss<Real>::Impl {
     for (Vector* v : {&energy, &by_root, &by_energy})
       v->setZero(static_cast<Eigen::Index>(most_cells));
     sums.resize(sources);
-    line.resize(sources);
-    places.reserve(sources);
     turns.reserve(sources);
+    for (auto* list : {&source_x, &source_y, &slid_x, &slid_y})
+      list->reserve(sources + kFeltMargin);
     cells.reserve(most_cells);
   }
 
@@ -73,11 +68,15 @@ struct FeltLoss<Real>::Impl {
   std::size_t row(Eigen::Index cell, std::size_t s) const {
     return static_cast<std::size_t>(cell) * skin.size() + s;
   }
+  FeltAround<Real> around(std::size_t cell) const {
+    return {static_cast<Real>(cells[cell].x), static_cast<Real>(cells[cell].y), source_x.data(),
+            source_y.data(), turns.size()};
+  }
   Real evaluate(std::span<const Real> amplitude, std::optional<Real> keep);
   Real evaluate(std::size_t s, std::optional<Real> keep);
   /// Returns Σ_row pair · by for each source.
   std::span<Pair> add_up(const std::vector<Pair>& by) {
-    const std::span<Pair> all = std::span(sums).first(places.size());
+    const std::span<Pair> all = std::span(sums).first(turns.size());
     for (Pair& sum : all) sum.part.fill(0);
     run.backward(pairs.data(), rows(), by.data(), all);
     return all;
@@ -88,14 +87,14 @@ struct FeltLoss<Real>::Impl {
   Real per_square = 1;  // 1 / unit² of pairs, felt and pull, which are scaled by units
   RenderLack<Real> lack;
   std::vector<FeltCells::Cell> cells;
-  std::vector<FeltSource<Real>> places;
+  std::vector<Real> source_x, source_y;  // [mm], with margin
+  std::vector<Real> slid_x, slid_y;      // ∂loss/∂x and ∂loss/∂y per amplitude, with margin
   std::vector<FeltTurn<Real>> turns;
   std::vector<Skin> skin;
   std::vector<Kept> pairs, slopes;    // rows × sources
   std::vector<Pair> felt, pull;       // for each row: v of (W1), and ∂loss/∂v …
   std::vector<Pair> turned;           // … rotated by a quarter turn in each harmonic
   std::vector<Pair> sums;             // for each source
-  std::vector<Real> line;             // for one row
   Vector energy, by_root, by_energy;  // e in each cell, ∂loss/∂√e, ∂loss/∂e
 };
 
@@ -120,13 +119,15 @@ template <class Real>
 void FeltLoss<Real>::set_sources(std::span<const FocusResponse<Real>> skins,
                                  std::span<const FeltSource<Real>> sources) {
   Impl& d = *impl_;
-  d.places.assign(sources.begin(), sources.end());
   const Real most = largest(skins, sources);
   const Real unit = most > 0 ? static_cast<Real>(kMostFixed) / most : Real(1);
   d.per_square = 1 / (unit * unit);
   d.turns.resize(sources.size());
+  for (auto* list : {&d.source_x, &d.source_y}) list->assign(sources.size() + kFeltMargin, 0);
   constexpr std::size_t kImaginary = kFeltParts / 2;
   for (std::size_t j = 0; j < sources.size(); ++j) {
+    d.source_x[j] = sources[j].x;
+    d.source_y[j] = sources[j].y;
     for (std::size_t n = 0; n < kImaginary; ++n) {
       FeltTurn<Real>& turn = d.turns[j];
       turn.straight[n] = turn.straight[n + kImaginary] = unit * sources[j].spectrum[n];
@@ -136,8 +137,8 @@ void FeltLoss<Real>::set_sources(std::span<const FocusResponse<Real>> skins,
   }
   for (std::size_t x = 0; x < d.cells.size(); ++x) {
     const std::size_t first = x * d.skin.size() * sources.size();
-    d.run.fill(skins, static_cast<Real>(d.cells[x].x), static_cast<Real>(d.cells[x].y), sources,
-               d.turns.data(), &d.pairs[first], d.slopes.empty() ? nullptr : &d.slopes[first]);
+    d.run.fill(skins, d.around(x), d.turns.data(), &d.pairs[first],
+               d.slopes.empty() ? nullptr : &d.slopes[first]);
   }
 }
 
@@ -209,21 +210,16 @@ template <class Real>
 void FeltLoss<Real>::slide(std::span<const Real> amplitude, std::span<Real> gradient_x,
                            std::span<Real> gradient_y) {
   Impl& d = *impl_;
-  const std::size_t sources = d.places.size();
+  const std::size_t sources = d.turns.size();
   const Real share = d.per_square / static_cast<Real>(d.skin.size());
-  std::fill(gradient_x.begin(), gradient_x.end(), Real(0));
-  std::fill(gradient_y.begin(), gradient_y.end(), Real(0));
+  for (auto* list : {&d.slid_x, &d.slid_y}) list->assign(sources + kFeltMargin, 0);
   for (std::size_t row = 0; row < d.rows(); ++row) {
-    d.run.slide(&d.slopes[row * sources], d.pull[row], std::span(d.line).first(sources));
-    const FeltCells::Cell& cell = d.cells[row / d.skin.size()];
-    const auto cx = static_cast<Real>(cell.x), cy = static_cast<Real>(cell.y);
-    for (std::size_t j = 0; j < sources; ++j) {
-      const Real dx = d.places[j].x - cx, dy = d.places[j].y - cy;
-      const Real distance = std::max(std::sqrt(dx * dx + dy * dy), Real(kLeastDistance));
-      const Real each = share * d.line[j] * amplitude[j] / distance;
-      gradient_x[j] += each * dx;
-      gradient_y[j] += each * dy;
-    }
+    d.run.slide(&d.slopes[row * sources], d.pull[row], d.around(row / d.skin.size()),
+                d.slid_x.data(), d.slid_y.data());
+  }
+  for (std::size_t j = 0; j < sources; ++j) {
+    gradient_x[j] = share * amplitude[j] * d.slid_x[j];
+    gradient_y[j] = share * amplitude[j] * d.slid_y[j];
   }
 }
 

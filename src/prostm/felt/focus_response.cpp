@@ -26,19 +26,16 @@ int first_felt_harmonic(double period) {
 }
 
 template <class Real>
-typename FocusResponse<Real>::Row FocusResponse<Real>::at(Real distance) const {
+typename FocusResponse<Real>::Parts FocusResponse<Real>::at(Real distance) const {
   const auto step = static_cast<Real>(kStep);
   const Real place = std::min(distance / step, static_cast<Real>(kDistances - 1));
-  const auto low = std::min(static_cast<std::size_t>(place), row.size() - 2);
-  const Row &a = row[low], &b = row[low + 1];
-  const Real t = place - static_cast<Real>(low), u = 1 - t;
-  // Hermite's cubic and its derivative
-  const Real va = (1 + 2 * t) * u * u, sa = t * u * u, vb = t * t * (3 - 2 * t), sb = -t * t * u;
-  const Real dv = 6 * t * u / step, da = u * (1 - 3 * t) / step, db = t * (3 * t - 2) / step;
-  Row out;
+  const auto low = std::min(static_cast<std::size_t>(place), cubic.size() - 1);
+  const Real t = place - static_cast<Real>(low);
+  const auto& by = cubic[low].by_power;
+  Parts out;
   for (std::size_t i = 0; i < kFeltParts; ++i) {
-    out.value[i] = va * a.value[i] + sa * a.slope[i] + vb * b.value[i] + sb * b.slope[i];
-    out.slope[i] = dv * (b.value[i] - a.value[i]) + da * a.slope[i] + db * b.slope[i];
+    out.value[i] = by[0][i] + t * (by[1][i] + t * (by[2][i] + t * by[3][i]));
+    out.slope[i] = (by[1][i] + t * (2 * by[2][i] + t * 3 * by[3][i])) / step;
   }
   return out;
 }
@@ -78,11 +75,18 @@ void FocusResponseMaker::make(const SkinModel& skin, double sigma, double period
   // lazy products need no temporary
   values_ = value_.lazyProduct(spectrum_);
   slopes_ = slope_.lazyProduct(spectrum_);
-  for (std::size_t r = 0; r < out.row.size(); ++r) {
+  out.largest = static_cast<Real>(values_.cwiseAbs().maxCoeff());
+  for (std::size_t r = 0; r < out.cubic.size(); ++r) {
+    auto& by = out.cubic[r].by_power;
     for (std::size_t i = 0; i < kFeltParts; ++i) {
       const auto at = static_cast<Eigen::Index>(r), part = static_cast<Eigen::Index>(i);
-      out.row[r].value[i] = static_cast<Real>(values_(at, part));
-      out.row[r].slope[i] = static_cast<Real>(slopes_(at, part));
+      // Hermite's cubic
+      const double value = values_(at, part), rise = values_(at + 1, part) - value;
+      const double slope = slopes_(at, part), next = slopes_(at + 1, part);
+      by[0][i] = static_cast<Real>(value);
+      by[1][i] = static_cast<Real>(slope);
+      by[2][i] = static_cast<Real>(3.0 * rise - 2.0 * slope - next);
+      by[3][i] = static_cast<Real>(slope + next - 2.0 * rise);
     }
   }
 }

@@ -21,21 +21,26 @@ inline constexpr std::size_t kFeltParts = 2 * static_cast<std::size_t>(kFeltHarm
 /// @param period period of the loop [s], > 0.
 int first_felt_harmonic(double period);
 
-/// A table over the distance from the focus's centre.
+/// Weighted displacement per pressure [µm/Pa], a cubic of the distance from the focus's centre
+/// within each step of a table.
 template <class Real>
 struct FocusResponse {
   static constexpr double kStep = 1.5;  ///< step of the distances [mm]
   static constexpr int kDistances = 202;
 
-  /// Weighted displacement per pressure [µm/Pa] at a distance, and its change over one step.
-  struct alignas(64) Row {
+  /// All parts at a distance, and their derivatives [1/mm].
+  struct Parts {
     std::array<Real, kFeltParts> value, slope;
   };
-  std::array<Row, static_cast<std::size_t>(kDistances)> row;
+  /// Coefficients of 1, t, t² and t³ within a step, t from 0 to 1.
+  struct alignas(64) Cubic {
+    std::array<std::array<Real, kFeltParts>, 4> by_power;
+  };
+  std::array<Cubic, static_cast<std::size_t>(kDistances - 1)> cubic;
+  Real largest;  ///< magnitude of the values at the ends of the steps
 
-  /// Returns the values of all harmonics at a distance, and their slopes [1/mm]: cubic
-  /// interpolation in the table, constant beyond its last distance. @param distance ≥ 0 [mm]
-  Row at(Real distance) const;
+  /// Returns the values at a distance, constant beyond the last one. @param distance ≥ 0 [mm]
+  Parts at(Real distance) const;
 };
 
 /// Computes FocusResponse tables. The constructor tabulates the Bessel functions.
@@ -50,7 +55,7 @@ class FocusResponseMaker {
 
  private:
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  Matrix value_, slope_;    // J_0(k r), and −k J_1(k r) over a step: distances × wave numbers
+  Matrix value_, slope_;    // J_0(k r), and −k J_1(k r) per step: distances × wave numbers
   Matrix spectrum_;         // wave numbers × parts
   Matrix values_, slopes_;  // distances × parts
 };

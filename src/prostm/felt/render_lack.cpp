@@ -42,7 +42,7 @@ RenderLack<Real>::RenderLack(std::size_t most_cells) {
   // the largest raster, margin included, is that of a single line of blocks
   constexpr auto kMost =
       (Eigen::Index{FeltCells::kBlocks} + 2 * kMostReach) * (2 * kMostReach + 1) +
-      Eigen::Index{kConvolveMargin};
+      Eigen::Index{kFeltMargin};
   for (Vector* v : {&plane_, &down_, &across_}) v->setZero(kMost);
 }
 

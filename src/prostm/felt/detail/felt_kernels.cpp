@@ -1,5 +1,6 @@
 #include "prostm/felt/detail/felt_kernels.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace prostm {
@@ -12,14 +13,15 @@ void multiply(const std::array<double, kFeltParts>& value, const FeltTurn<double
     out[i] = value[i] * by.straight[i] + value[(i + kFeltParts / 2) % kFeltParts] * by.crossed[i];
 }
 
-void fill(std::span<const FocusResponse<double>> skins, double x, double y,
-          std::span<const FeltSource<double>> sources, const FeltTurn<double>* turns,
-          FeltPair<double>* pairs, FeltPair<double>* slopes) {
+void fill(std::span<const FocusResponse<double>> skins, const FeltAround<double>& around,
+          const FeltTurn<double>* turns, FeltPair<double>* pairs, FeltPair<double>* slopes) {
   for (std::size_t s = 0; s < skins.size(); ++s) {
-    for (std::size_t j = 0; j < sources.size(); ++j) {
-      const auto row = skins[s].at(std::hypot(x - sources[j].x, y - sources[j].y));
-      multiply(row.value, turns[j], pairs[s * sources.size() + j].part);
-      if (slopes != nullptr) multiply(row.slope, turns[j], slopes[s * sources.size() + j].part);
+    for (std::size_t j = 0; j < around.sources; ++j) {
+      const std::size_t at = s * around.sources + j;
+      const auto parts =
+          skins[s].at(std::hypot(around.x[j] - around.cell_x, around.y[j] - around.cell_y));
+      multiply(parts.value, turns[j], pairs[at].part);
+      if (slopes != nullptr) multiply(parts.slope, turns[j], slopes[at].part);
     }
   }
 }
@@ -46,11 +48,15 @@ void backward(const FeltPair<double>* pairs, std::size_t rows, const FeltPair<do
   }
 }
 
-void slide(const FeltPair<double>* slopes, const FeltPair<double>& pull, std::span<double> out) {
-  for (double& sum : out) {
-    sum = 0;
-    for (std::size_t i = 0; i < kFeltParts; ++i) sum += slopes->part[i] * pull.part[i];
-    ++slopes;
+void slide(const FeltPair<double>* slopes, const FeltPair<double>& pull,
+           const FeltAround<double>& around, double* sum_x, double* sum_y) {
+  for (std::size_t j = 0; j < around.sources; ++j) {
+    double sum = 0;
+    for (std::size_t i = 0; i < kFeltParts; ++i) sum += slopes[j].part[i] * pull.part[i];
+    const double dx = around.x[j] - around.cell_x, dy = around.y[j] - around.cell_y;
+    const double distance = std::max(std::hypot(dx, dy), kLeastDistance);
+    sum_x[j] += sum * dx / distance;
+    sum_y[j] += sum * dy / distance;
   }
 }
 

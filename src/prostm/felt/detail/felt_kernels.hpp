@@ -36,25 +36,36 @@ struct alignas(64) FeltTurn {
   std::array<Real, kFeltParts> straight, crossed;
 };
 
-/// Number of values beyond its size that convolve() may write, and beyond that, read.
-inline constexpr std::size_t kConvolveMargin = kFeltParts;
+/// Number of values beyond its size that a list of sources must have, or that convolve() may write,
+/// and beyond that, read.
+inline constexpr std::size_t kFeltMargin = 4 * kFeltParts;
+
+/// A cell and the sources, whose lists have a margin of kFeltMargin.
+template <class Real>
+struct FeltAround {
+  Real cell_x, cell_y;
+  const Real *x, *y;  ///< of the sources [mm]
+  std::size_t sources;
+};
+inline constexpr double kLeastDistance = 1e-6;  ///< lower bound of a distance as a divisor [mm]
 
 /// Stored pairs are in row-major order; a row is a cell on a skin.
 template <class Real>
 struct FeltKernels {
-  /// Fills the rows of the cell at (x, y), one per skin, and their slopes if `slopes` is not null.
-  /// @param turns spectra of the sources.
-  void (*fill)(std::span<const FocusResponse<Real>> skins, Real x, Real y,
-               std::span<const FeltSource<Real>> sources, const FeltTurn<Real>* turns,
-               FeltKept<Real>* pairs, FeltKept<Real>* slopes);
+  /// Fills the rows of a cell, one per skin, and their slopes if `slopes` is not null. @param turns
+  /// spectra of the sources.
+  void (*fill)(std::span<const FocusResponse<Real>> skins, const FeltAround<Real>& around,
+               const FeltTurn<Real>* turns, FeltKept<Real>* pairs, FeltKept<Real>* slopes);
   /// out[row] = Σ_source pair · amplitude.
   void (*forward)(const FeltKept<Real>* pairs, std::size_t rows, std::span<const Real> amplitude,
                   FeltPair<Real>* out);
   /// sum[source] += Σ_row pair · pull[row], part by part.
   void (*backward)(const FeltKept<Real>* pairs, std::size_t rows, const FeltPair<Real>* pull,
                    std::span<FeltPair<Real>> sum);
-  /// out[source] = Σ_part slope · pull, for one row.
-  void (*slide)(const FeltKept<Real>* slopes, const FeltPair<Real>& pull, std::span<Real> out);
+  /// sum_x[source] += Σ_part slope · pull · ∂distance/∂x, for one row; sum_y in the same way. Sums
+  /// have a margin.
+  void (*slide)(const FeltKept<Real>* slopes, const FeltPair<Real>& pull,
+                const FeltAround<Real>& around, Real* sum_x, Real* sum_y);
   /// out[i] = Σ_t taps[t] · in[i + t · step].
   void (*convolve)(const Real* in, std::size_t step, std::span<const Real> taps, std::size_t size,
                    Real* out);

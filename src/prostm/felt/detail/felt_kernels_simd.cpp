@@ -26,12 +26,13 @@ using DS = hn::Rebind<std::int16_t, D>;
 using Response = FocusResponse<float>;
 using Pair = FeltPair<float>;
 using Fixed = FeltFixed;
-using Source = FeltSource<float>;
+using Around = FeltAround<float>;
 
 constexpr std::size_t kLanes = hn::MaxLanes(D());
 constexpr std::size_t kVectors = kFeltParts / kLanes;
-// sources looked up in the table at once; rows of pairs summed at once
-constexpr std::size_t kChunk = kFeltParts, kRows = kVectors == 1 ? 4 : 2;
+// sources looked up in the table at once; rows of pairs summed at once; vectors convolved at once
+constexpr std::size_t kChunk = kFeltParts, kRows = kVectors == 1 ? 4 : 2, kConvolved = 4;
+static_assert(kConvolved * kLanes <= kFeltMargin);
 
 HWY_INLINE V Load(const std::array<float, kFeltParts>& parts, std::size_t v) {
   return hn::Load(D(), parts.data() + v * kLanes);
@@ -40,44 +41,26 @@ HWY_INLINE V Load(const Fixed& pair, std::size_t v) {
   return hn::ConvertTo(D(), hn::PromoteTo(DI(), hn::Load(DS(), pair.part.data() + v * kLanes)));
 }
 
-/// Positions of sources in a table: rows low and low + 1, and the weights of their entries for the
-/// value and for its slope.
+/// Positions of sources in a table: a step, and the share t of it.
 struct alignas(64) Places {
-  std::array<float, kChunk> distance;  // first squared, finally the distance of row low
-  std::array<std::array<float, kChunk>, 4> value, slope;
+  std::array<float, kChunk> step, share;
   std::array<std::size_t, kChunk> low;
 
-  void Find(float x, float y, const Source* sources, std::size_t count) {
-    constexpr auto kPerStep = static_cast<float>(1.0 / Response::kStep);
-    constexpr auto kLast = static_cast<float>(Response::kDistances - 1);
-    for (std::size_t i = 0; i < count; ++i) {
-      const float dx = x - sources[i].x, dy = y - sources[i].y;
-      distance[i] = dx * dx + dy * dy;
-    }
+  void Find(const Around& around, std::size_t first) {
     const D d;
-    const V one = hn::Set(d, 1.0F), scale = hn::Set(d, kPerStep);
+    const V scale = hn::Set(d, static_cast<float>(1.0 / Response::kStep));
+    const V last = hn::Set(d, static_cast<float>(Response::kDistances - 1));
+    const V last_step = hn::Sub(last, hn::Set(d, 1.0F));
     for (std::size_t i = 0; i < kChunk; i += kLanes) {
-      const V away = hn::Mul(hn::Sqrt(hn::Load(d, distance.data() + i)), scale);
-      const V place = hn::Min(away, hn::Set(d, kLast));
-      const V below = hn::Min(hn::Floor(place), hn::Set(d, kLast - 1.0F));
-      hn::Store(below, d, distance.data() + i);
-      const V t = hn::Sub(place, below), u = hn::Sub(one, t);
-      const V tu = hn::Mul(t, u), tt = hn::Mul(t, t);
-      const V more = hn::Mul(tt, hn::NegMulAdd(hn::Set(d, 2.0F), t, hn::Set(d, 3.0F)));
-      const V rise = hn::Mul(tu, hn::Set(d, 6.0F * kPerStep));
-      const V three = hn::Mul(hn::Set(d, 3.0F), t);
-      const auto store = [&](V what, std::array<float, kChunk>& to)
-                             HWY_ATTR { hn::Store(what, d, to.data() + i); };
-      store(hn::Sub(one, more), value[0]);
-      store(hn::Mul(tu, u), value[1]);
-      store(more, value[2]);
-      store(hn::Neg(hn::Mul(tu, t)), value[3]);
-      store(hn::Neg(rise), slope[0]);
-      store(hn::Mul(scale, hn::Mul(u, hn::Sub(one, three))), slope[1]);
-      store(rise, slope[2]);
-      store(hn::Mul(scale, hn::Mul(t, hn::Sub(three, hn::Set(d, 2.0F)))), slope[3]);
+      const V dx = hn::Sub(hn::LoadU(d, around.x + first + i), hn::Set(d, around.cell_x));
+      const V dy = hn::Sub(hn::LoadU(d, around.y + first + i), hn::Set(d, around.cell_y));
+      const V distance = hn::Sqrt(hn::MulAdd(dx, dx, hn::Mul(dy, dy)));
+      const V place = hn::Min(hn::Mul(distance, scale), last);
+      const V below = hn::Min(hn::Floor(place), last_step);
+      hn::Store(below, d, step.data() + i);
+      hn::Store(hn::Sub(place, below), d, share.data() + i);
     }
-    for (std::size_t i = 0; i < count; ++i) low[i] = static_cast<std::size_t>(distance[i]);
+    for (std::size_t i = 0; i < kChunk; ++i) low[i] = static_cast<std::size_t>(step[i]);
   }
 };
 
@@ -92,39 +75,54 @@ HWY_INLINE V Crossed(const V (&row)[kCount], std::size_t v) {
   }
 }
 
-/// Writes the product of a sum of four rows of the table and a source's spectrum.
-HWY_INLINE void Blend(const Response& response, std::size_t low,
-                      const std::array<std::array<float, kChunk>, 4>& by, std::size_t i,
-                      const FeltTurn<float>& turn, Fixed& out) {
-  const D d;
-  const auto &a = response.row[low], &b = response.row[low + 1];
-  V sum[kVectors];
+/// Writes the product of values of the table and a source's spectrum.
+HWY_INLINE void Turn(const V (&value)[kVectors], const FeltTurn<float>& turn, Fixed& out) {
   for (std::size_t v = 0; v < kVectors; ++v) {
-    sum[v] = hn::Mul(hn::Set(d, by[0][i]), Load(a.value, v));
-    sum[v] = hn::MulAdd(hn::Set(d, by[1][i]), Load(a.slope, v), sum[v]);
-    sum[v] = hn::MulAdd(hn::Set(d, by[2][i]), Load(b.value, v), sum[v]);
-    sum[v] = hn::MulAdd(hn::Set(d, by[3][i]), Load(b.slope, v), sum[v]);
-  }
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    const V product =
-        hn::MulAdd(Crossed(sum, v), Load(turn.crossed, v), hn::Mul(sum[v], Load(turn.straight, v)));
+    const V product = hn::MulAdd(Crossed(value, v), Load(turn.crossed, v),
+                                 hn::Mul(value[v], Load(turn.straight, v)));
     hn::Store(hn::DemoteTo(DS(), hn::NearestInt(product)), DS(), out.part.data() + v * kLanes);
   }
 }
 
-void Fill(std::span<const Response> skins, float x, float y, std::span<const Source> sources,
-          const FeltTurn<float>* turns, Fixed* pairs, Fixed* slopes) {
-  Places places = {};
-  const std::size_t all = sources.size();
-  for (std::size_t first = 0; first < all; first += kChunk) {
-    const std::size_t count = std::min(kChunk, all - first);
-    places.Find(x, y, &sources[first], count);
+/// Fills the pairs, and with kSlopes their slopes, of one cell and skin for at most kChunk sources.
+template <bool kSlopes>
+HWY_INLINE void FillChunk(const Response& skin, const Places& places, const FeltTurn<float>* turns,
+                          std::size_t count, Fixed* pairs, [[maybe_unused]] Fixed* slopes) {
+  const D d;
+  const V per_step = hn::Set(d, static_cast<float>(1.0 / Response::kStep));
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& by = skin.cubic[places.low[i]].by_power;
+    const V t = hn::Set(d, places.share[i]);
+    V value[kVectors];
+    [[maybe_unused]] V slope[kVectors];
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      // Horner's scheme for a cubic and its derivative
+      const V third = Load(by[3], v);
+      const V second = hn::MulAdd(t, third, Load(by[2], v));
+      const V first = hn::MulAdd(t, second, Load(by[1], v));
+      value[v] = hn::MulAdd(t, first, Load(by[0], v));
+      if constexpr (kSlopes) {
+        const V twice = hn::MulAdd(t, third, second);
+        slope[v] = hn::Mul(per_step, hn::MulAdd(t, twice, first));
+      }
+    }
+    Turn(value, turns[i], pairs[i]);
+    if constexpr (kSlopes) Turn(slope, turns[i], slopes[i]);
+  }
+}
+
+void Fill(std::span<const Response> skins, const Around& around, const FeltTurn<float>* turns,
+          Fixed* pairs, Fixed* slopes) {
+  Places places;
+  for (std::size_t first = 0; first < around.sources; first += kChunk) {
+    const std::size_t count = std::min(kChunk, around.sources - first);
+    places.Find(around, first);
     for (std::size_t s = 0; s < skins.size(); ++s) {
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t j = first + i, at = s * all + j;
-        Blend(skins[s], places.low[i], places.value, i, turns[j], pairs[at]);
-        if (slopes != nullptr)
-          Blend(skins[s], places.low[i], places.slope, i, turns[j], slopes[at]);
+      const std::size_t at = s * around.sources + first;
+      if (slopes != nullptr) {
+        FillChunk<true>(skins[s], places, turns + first, count, pairs + at, slopes + at);
+      } else {
+        FillChunk<false>(skins[s], places, turns + first, count, pairs + at, nullptr);
       }
     }
   }
@@ -184,24 +182,42 @@ void Backward(const Fixed* pairs, std::size_t rows, const Pair* pull, std::span<
   for (; row < rows; ++row) AddRows<1>(pairs + row * sums.size(), pull + row, sums);
 }
 
-void Slide(const Fixed* slopes, const Pair& pull, std::span<float> out) {
+void Slide(const Fixed* slopes, const Pair& pull, const Around& around, float* sum_x,
+           float* sum_y) {
   const D d;
-  for (std::size_t j = 0; j < out.size(); ++j) {
-    V sum = hn::Zero(d);
-    for (std::size_t v = 0; v < kVectors; ++v)
-      sum = hn::MulAdd(Load(slopes[j], v), Load(pull.part, v), sum);
-    out[j] = hn::GetLane(hn::SumOfLanes(d, sum));
+  V by[kVectors];
+  for (std::size_t v = 0; v < kVectors; ++v) by[v] = Load(pull.part, v);
+  for (std::size_t first = 0; first < around.sources; first += kLanes) {
+    alignas(64) std::array<float, kLanes> each = {};
+    for (std::size_t i = 0; i < std::min(kLanes, around.sources - first); ++i) {
+      V sum = hn::Mul(Load(slopes[first + i], 0), by[0]);
+      for (std::size_t v = 1; v < kVectors; ++v)
+        sum = hn::MulAdd(Load(slopes[first + i], v), by[v], sum);
+      each[i] = hn::GetLane(hn::SumOfLanes(d, sum));
+    }
+    const V dx = hn::Sub(hn::LoadU(d, around.x + first), hn::Set(d, around.cell_x));
+    const V dy = hn::Sub(hn::LoadU(d, around.y + first), hn::Set(d, around.cell_y));
+    const V distance = hn::Max(hn::Sqrt(hn::MulAdd(dx, dx, hn::Mul(dy, dy))),
+                               hn::Set(d, static_cast<float>(kLeastDistance)));
+    const V slope = hn::Div(hn::Load(d, each.data()), distance);
+    hn::StoreU(hn::MulAdd(slope, dx, hn::LoadU(d, sum_x + first)), d, sum_x + first);
+    hn::StoreU(hn::MulAdd(slope, dy, hn::LoadU(d, sum_y + first)), d, sum_y + first);
   }
 }
 
 void Convolve(const float* in, std::size_t step, std::span<const float> taps, std::size_t size,
               float* out) {
   const D d;
-  for (std::size_t i = 0; i < size; i += kLanes) {
-    V sum = hn::Zero(d);
-    for (std::size_t t = 0; t < taps.size(); ++t)
-      sum = hn::MulAdd(hn::Set(d, taps[t]), hn::LoadU(d, in + i + t * step), sum);
-    hn::StoreU(sum, d, out + i);
+  // independent sums hide the latency of the additions
+  for (std::size_t i = 0; i < size; i += kConvolved * kLanes) {
+    V sum[kConvolved];
+    for (V& s : sum) s = hn::Zero(d);
+    for (std::size_t t = 0; t < taps.size(); ++t) {
+      const V tap = hn::Set(d, taps[t]);
+      for (std::size_t v = 0; v < kConvolved; ++v)
+        sum[v] = hn::MulAdd(tap, hn::LoadU(d, in + i + t * step + v * kLanes), sum[v]);
+    }
+    for (std::size_t v = 0; v < kConvolved; ++v) hn::StoreU(sum[v], d, out + i + v * kLanes);
   }
 }
 
