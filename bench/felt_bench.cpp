@@ -173,7 +173,7 @@ int main(int argc, char** argv) {
     measure_evaluations(rows);
     for (const bool warm : {false, true}) measure_plans(frames, warm, false, rows);
     for (const bool warm : {false, true}) {
-      for (const double budget : {10e-3, 20e-3}) measure_preset(100, warm, budget, rows);
+      for (const double budget : {4e-3, 10e-3, 20e-3}) measure_preset(100, warm, budget, rows);
       measure_preset(std::min(frames, 12), warm, 0.0, rows);
     }
     measure_plans(std::min(frames, 6), false, true, rows);

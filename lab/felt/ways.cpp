@@ -123,6 +123,8 @@ std::vector<Way> ways(const TransducerArray& array) {
   in_time.preset = Preset::Felt;
   in_time.budget = in_time.traits().live_budget;
   all.push_back(pro_stm("preset felt, live", in_time, array));
+  in_time.budget = 4e-3;
+  all.push_back(pro_stm("preset felt, 4 ms", in_time, array));
   all.push_back(pro_stm("paper-valid", paper, array));
   all.push_back(am("AM, 4 foci", 4, array));
   all.push_back(am("AM, 8 foci", 8, array));

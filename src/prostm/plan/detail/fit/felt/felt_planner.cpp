@@ -12,13 +12,16 @@ namespace prostm::planning {
 namespace {
 
 constexpr std::size_t kRoughCells = 150;  // cells on which plans are compared, and points move
+constexpr double kShortBudget = 6e-3;  // [s]; within it, pressures are chosen on these cells, too
 constexpr FeltEffort kRoughEffort = {8, 0.5F};  // descent of each plan that is compared
 // descents of the chosen plan: points, then pressures, first of a new plan, then from the last one
 constexpr FeltEffort kMoving = {25, 0.5F}, kMoved = {12, 0.5F};
 constexpr FeltEffort kMovingOn = {8, 0.3F}, kMovedOn = {6, 0.5F};
-constexpr int kRefiningRounds = 4;    // of moving points and mending paths
-constexpr int kPlansPerRival = 3;     // plans of a sequence for each comparison
-constexpr float kHysteresis = 0.04F;  // cost that another candidate must save
+constexpr FeltEffort kBriefly = {6, 0.3F};  // each of them within a short budget
+constexpr double kFirst = 2e-3;             // assumed time of the first plan of a candidate [s]
+constexpr int kRefiningRounds = 4;          // of moving points and mending paths
+constexpr int kPlansPerRival = 3;           // plans of a sequence for each comparison
+constexpr float kHysteresis = 0.04F;        // cost that another candidate must save
 constexpr float kCountChange =
     0.02F;  // the same for another number of paths, when all are made anew
 
@@ -36,18 +39,28 @@ FeltTuning rough_tuning() {
   return tuning;
 }
 
-FeltTuning fine_tuning() {
+bool is_short(double budget) {
+  return budget > 0.0 && budget <= kShortBudget;
+}
+
+FeltTuning fine_tuning(double budget) {
+  const bool brief = is_short(budget);
   FeltTuning tuning;
-  tuning.moving = kMoving;
-  tuning.moving_on = kMovingOn;
-  tuning.from_moved = kMoved;
-  tuning.from_moved_on = kMovedOn;
+  tuning.moving = brief ? kBriefly : kMoving;
+  tuning.moving_on = brief ? kBriefly : kMovingOn;
+  tuning.from_moved = brief ? kBriefly : kMoved;
+  tuning.from_moved_on = brief ? kBriefly : kMovedOn;
   return tuning;
 }
 
 /// Few cells, and the nominal skin alone.
 FeltScope rough_scope(const std::shared_ptr<FeltTables>& tables) {
   return {.most_cells = kRoughCells, .skins = 1, .tables = tables};
+}
+
+/// Returns the scope of the pressures of a chosen plan.
+FeltScope fine_scope(double budget, const std::shared_ptr<FeltTables>& tables) {
+  return is_short(budget) ? rough_scope(tables) : FeltScope{.tables = tables};
 }
 
 /// Bounds of a circle or a line to start from.
@@ -72,15 +85,17 @@ FeltPlanner::FeltPlanner(const PlanSettings& settings, std::size_t max_cells,
     : settings_(settings),
       rough_(step_settings(settings, false), rough_tuning(), rough_scope(tables),
              FeltLoudness::Highest),
-      moving_(step_settings(settings, true), fine_tuning(), rough_scope(tables),
+      moving_(step_settings(settings, true), fine_tuning(settings.budget), rough_scope(tables),
               FeltLoudness::Highest),
-      fine_(step_settings(settings, false), fine_tuning(), {.tables = tables},
-            FeltLoudness::Highest),
+      fine_(step_settings(settings, false), fine_tuning(settings.budget),
+            fine_scope(settings.budget, tables), FeltLoudness::Highest),
       thorough_(step_settings(settings, true), {},
                 {.most_cells = kFinerFeltCells, .tables = tables}, FeltLoudness::Highest),
-      regions_(max_cells) {
+      regions_(max_cells),
+      spare_(std::make_unique<FitPlanner>(settings, max_cells)) {
   const auto add = [&](int paths, Start start) {
-    candidates_.push_back({FitPlanner(settings, max_cells), paths, start});
+    candidates_.push_back(
+        {std::make_unique<FitPlanner>(settings, max_cells), paths, start, kFirst});
   };
   // a short budget compares only the first
   for (int paths = settings.paths; paths >= 1; --paths) add(paths, Start::Stops);
@@ -99,7 +114,7 @@ void FeltPlanner::reset() {
 
 /// Returns (P25), as felt on the cells and skins of `step`.
 float FeltPlanner::cost(Candidate& candidate, FeltStep& step) {
-  const FeltRating rating = candidate.fit.rate(step);
+  const FeltRating rating = candidate.fit->rate(step);
   return rating.lack - static_cast<float>(settings_.strength_weight) * std::log(rating.strength);
 }
 
@@ -112,21 +127,21 @@ float FeltPlanner::change_cost(const Candidate& candidate) const {
 float FeltPlanner::plan_roughly(const PatchTask& task, Candidate& candidate, PlanStats& stats) {
   const StageTimer all;
   if (candidate.start == Start::Stops) {
-    candidate.fit.reset();
-    candidate.fit.find(with_paths(task, candidate.paths), stats);
+    candidate.fit->reset();
+    candidate.fit->find(with_paths(task, candidate.paths), stats);
   } else {
     loops_.samples = settings_.moved_samples();
     const auto set = candidate.start == Start::Circle ? start_circle : start_line;
     set(task.target, loop_bounds(settings_, task.target), loops_);
-    candidate.fit.find_from(loops_, with_paths(task, candidate.paths), stats);
+    candidate.fit->find_from(loops_, with_paths(task, candidate.paths), stats);
   }
   const StageTimer timer;
-  rough_.set_target(task.target, task.maximum, candidate.fit.sigma());
+  rough_.set_target(task.target, task.maximum, candidate.fit->sigma());
   rough_.forget();
-  candidate.fit.choose_felt(rough_, stats);
+  candidate.fit->choose_felt(rough_, stats);
   const float found = cost(candidate, rough_);
   stats.refine += timer.seconds();
-  times_.comparing = updated_mean(times_.comparing, all.seconds());
+  candidate.seconds = updated_mean(candidate.seconds, all.seconds());
   return found;
 }
 
@@ -137,7 +152,7 @@ void FeltPlanner::compare(const PatchTask& task, int paths, PlanStats& stats) {
   rated_.clear();
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     if (candidates_[i].paths > task.paths || (paths > 0 && candidates_[i].paths != paths)) continue;
-    if (!rated_.empty() && !has_time(task, times_.comparing + times_.ending)) break;
+    if (!rated_.empty() && !has_time(task, candidates_[i].seconds + times_.ending)) break;
     rated_.push_back({plan_roughly(task, candidates_[i], stats) + change_cost(candidates_[i]), i});
   }
   std::ranges::sort(rated_, {}, [](const Rated& r) { return std::pair(r.cost, r.candidate); });
@@ -150,9 +165,9 @@ void FeltPlanner::compare(const PatchTask& task, int paths, PlanStats& stats) {
 float FeltPlanner::refine(const PatchTask& task, Candidate& candidate, int rounds,
                           PlanStats& stats) {
   const StageTimer timer;
-  thorough_.set_target(task.target, task.maximum, candidate.fit.sigma());
-  candidate.fit.move_felt(task, thorough_, rounds, stats);
-  candidate.fit.choose_felt(thorough_, stats);
+  thorough_.set_target(task.target, task.maximum, candidate.fit->sigma());
+  candidate.fit->move_felt(task, thorough_, rounds, stats);
+  candidate.fit->choose_felt(thorough_, stats);
   const float refined = cost(candidate, thorough_);
   stats.refine += timer.seconds();
   return refined;
@@ -177,23 +192,48 @@ bool FeltPlanner::refine_candidates(const PatchTask& task, PlanStats& stats) {
   return std::isfinite(least);
 }
 
-/// Continues the last plan, or another candidate's, with which it is compared at some frames, if
-/// that costs less.
+/// Returns whether all candidates can be made anew in time.
+bool FeltPlanner::has_time_for_all(const PatchTask& task) const {
+  double seconds = times_.ending;
+  for (const Candidate& candidate : candidates_) seconds += candidate.seconds;
+  return has_time(task, seconds);
+}
+
+/// Returns whether a candidate may replace the chosen one, or be that one made anew.
+bool FeltPlanner::may_follow(const PatchTask& task, std::size_t candidate) const {
+  const int paths = candidates_[candidate].paths;
+  if (!is_lost()) return candidate != chosen_ && paths <= task.paths && count_.may_change();
+  return paths <= task.paths && (count_.may_change() || paths == count_.paths());
+}
+
+/// Makes the next candidate anew, by turns, and chooses it if it costs less than the last plan.
+/// @return whether it was chosen.
+bool FeltPlanner::replace(const PatchTask& task, PlanStats& stats) {
+  const bool lost = is_lost();
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    rival_ = (rival_ + 1) % candidates_.size();
+    if (!may_follow(task, rival_)) continue;
+    Candidate& rival = candidates_[rival_];
+    if (!lost && !has_time(task, rival.seconds + times_.ending)) return false;
+    std::swap(rival.fit, spare_);
+    const float saved = cost_ - plan_roughly(task, rival, stats);
+    if (saved > (lost ? change_cost(rival) : kHysteresis)) {
+      chosen_ = rival_;
+      fine_.forget();
+      return true;
+    }
+    std::swap(rival.fit, spare_);
+    return false;
+  }
+  return false;
+}
+
+/// Continues the last plan, or a candidate that costs less, with one of which it is compared at
+/// some frames.
 void FeltPlanner::continue_plan(const PatchTask& task, PlanStats& stats) {
-  const std::size_t last = chosen_;
-  if (++plans_ % kPlansPerRival == 0 && count_.may_change() &&
-      has_time(task, times_.comparing + times_.ending)) {
-    do rival_ = (rival_ + 1) % candidates_.size();
-    while (rival_ == last || candidates_[rival_].paths > task.paths);
-    const float other = plan_roughly(task, candidates_[rival_], stats);
-    if (other < cost_ - kHysteresis) chosen_ = rival_;
-  }
+  const bool replaced = ++plans_ % kPlansPerRival == 0 && replace(task, stats);
   Candidate& next = candidates_[chosen_];
-  if (chosen_ == last) {
-    next.fit.find(with_paths(task, next.paths), stats);
-  } else {
-    fine_.forget();
-  }
+  if (!replaced) next.fit->find(with_paths(task, next.paths), stats);
   if (!has_time(task, times_.refining)) return end_quickly(task, stats);
   thorough_.continue_from(fine_);
   refine(task, next, 1, stats);
@@ -203,7 +243,7 @@ void FeltPlanner::continue_plan(const PatchTask& task, PlanStats& stats) {
 /// Moves the points of the chosen plan on few cells, and chooses its pressures.
 void FeltPlanner::end_quickly(const PatchTask& task, PlanStats& stats) {
   const StageTimer timer;
-  FitPlanner& fit = candidates_[chosen_].fit;
+  FitPlanner& fit = *candidates_[chosen_].fit;
   moving_.continue_from(fine_);
   moving_.set_target(task.target, task.maximum, fit.sigma());
   fit.move_felt(task, moving_, 1, stats);
@@ -226,7 +266,7 @@ void FeltPlanner::make_anew(const PatchTask& task, int paths, PlanStats& stats) 
 void FeltPlanner::rate(const PatchTask& task, PlanStats& stats) {
   const StageTimer timer;
   Candidate& chosen = candidates_[chosen_];
-  rough_.set_target(task.target, task.maximum, chosen.fit.sigma());
+  rough_.set_target(task.target, task.maximum, chosen.fit->sigma());
   cost_ = cost(chosen, rough_);
   stats.refine += timer.seconds();
 }
@@ -238,7 +278,7 @@ void FeltPlanner::plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats
   count_.begin(regions_.count(task.target, task.maximum), task.time);
   const bool follows = chosen_ != kNone && candidates_[chosen_].paths <= task.paths;
   const int paths = follows && !count_.may_change() ? candidates_[chosen_].paths : 0;
-  if (follows && !is_lost()) {
+  if (follows && !(is_lost() && has_time_for_all(task))) {
     continue_plan(task, stats);
     rate(task, stats);
     if (is_lost() && has_time(task, times_.refining)) make_anew(task, paths, stats);
@@ -246,7 +286,7 @@ void FeltPlanner::plan_patch(const PatchTask& task, Plan& plan, PlanStats& stats
   } else {
     make_anew(task, paths, stats);
   }
-  candidates_[chosen_].fit.append(task, plan, stats);
+  candidates_[chosen_].fit->append(task, plan, stats);
   count_.take(candidates_[chosen_].paths);
 }
 
