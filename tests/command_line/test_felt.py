@@ -10,7 +10,7 @@ import pytest
 from conftest import ROOT
 
 FIELD = ROOT / "data" / "four-plumes.json"
-LEVEL = re.compile(r"^  estimated sensation level: about (\d+) dB (above|below) the threshold of touch \((-?\d+) to (-?\d+) dB\): ",
+LEVEL = re.compile(r"^  felt strength:? +about (\d+) dB (above|below) the threshold of touch \((-?\d+) to (-?\d+) dB\): ",
                   re.MULTILINE)
 
 
@@ -92,15 +92,18 @@ def test_am_reports_it_too(prostm, settings):
 
 @pytest.mark.long
 def test_with_an_array_the_verdict_is_about_the_felt_field(prostm):
-    end = " (1 is perfect, 0 is no better than an even field)"
     metrics = plan_of(prostm, "--array", "usx", "--preset", "felt")["metrics"]
     lines = prostm("plan", FIELD, "--array", "usx", "--preset", "felt").stdout.splitlines()
-    assert lines[1] == (f"4 paths render this field with skill {metrics['skill_0']:.2f} as pressure and "
-                        f"skill_8 {metrics['felt_skill']:.2f} as felt by the model{end}")
+    assert lines[1] == "4 paths render this field; a shape of 1 is perfect, 0 is no better than an even field"
+    assert lines[2] == f"  shape by Eq. (1)   {metrics['skill_0']:.2f}"
+    assert lines[3] == f"  felt shape         {metrics['felt_skill']:.2f}"
+    assert LEVEL.match(lines[4]) and int(level_in(lines[4])[0]) == round(metrics["sensation_level"])
+    assert lines[5] == f"  spill              {metrics['spill']:.3f}"
     metrics = plan_of(prostm, "--preset", "felt")["metrics"]
     lines = prostm("plan", FIELD, "--preset", "felt").stdout.splitlines()
-    assert lines[1] == (f"4 paths render this field with skill {metrics['skill_0']:.2f} as pressure; "
-                        f"--array judges what is felt{end}")
+    assert lines[2:5] == [f"  shape by Eq. (1)   {metrics['skill_0']:.2f}",
+                          "  felt shape         not computed without --array",
+                          f"  spill              {metrics['spill']:.3f}"]
 
 
 def test_a_pressure_field_that_loses_to_a_control_does_not_imply_that_the_felt_field_does(prostm, settings):
@@ -140,7 +143,7 @@ def test_invalid_options_are_rejected(refuses, settings, text, options, words):
 def test_a_run_plays_such_plans(prostm, settings, tmp_path, text, method, words):
     done = prostm("run", "--settings", settings(text), "--method", method, "--grid", "32", "--seconds", "1.5", "--stepped",
                   "--record", "run.h5")
-    assert f"{words}; nobody has felt it" in line_with(done.stdout, "  felt ")
+    assert f"{words}; nobody has felt it" in line_with(done.stdout, "nobody has felt it")
     with h5py.File(tmp_path / "run.h5") as recording:
         loops, phases = recording["plan/loop"][:], recording["plan/focus_phase"][:]
     assert (0.01 <= loops.max() <= 0.02) == (method == "pro-stm") and loops.max() <= 0.02
@@ -227,9 +230,47 @@ def test_a_run_reports_the_median_of_its_plans(prostm, tmp_path):
         return text, json.loads((tmp_path / "run.json").read_text())["sensation"]
 
     text, plumes = run("four-plumes")
-    assert 1 <= plumes["plans"] <= 3 and plumes["sound"] == "measured"
+    assert 1 <= plumes["plans"] <= 5 and plumes["sound"] == "measured"
     assert plumes["lowest_db"] <= plumes["level_db"] <= plumes["highest_db"]
     assert level_in(text)[0] == pytest.approx(plumes["level_db"], abs=0.5)
     assert run("four-plumes", "3")[1] is None  # too short
     # in still air only the hand's own movement presses
     assert run("still-air")[1]["level_db"] < plumes["level_db"] - 6
+
+
+@pytest.mark.long
+def test_a_plan_names_fewer_paths_if_they_are_felt_better(prostm, tmp_path):
+    y, x = np.mgrid[0:30, 0:30] * 5e-3 - 0.0725
+    np.save(tmp_path / "line.npy", np.exp(-((x / 0.006) ** 2) / 2) * (abs(y) < 0.04))
+
+    def plan(*options):
+        text = prostm("plan", "line.npy", "--cell-mm", "5", "--array", "usx", *options, "--json", "plan.json").stdout
+        return text, json.loads((tmp_path / "plan.json").read_text())["metrics"]
+
+    text, four = plan()
+    advice = re.search(r"^  1 path is felt better than 4: felt shape (.*) instead of (.*), and (\d+) dB stronger; try "
+                       r"--paths 1 or --preset felt$", text, re.MULTILINE)
+    text, one = plan("--paths", "1")
+    assert "felt better than" not in text
+    assert advice.groups() == (f"{one['felt_skill']:.2f}", f"{four['felt_skill']:.2f}",
+                               f"{one['sensation_level'] - four['sensation_level']:.0f}")
+    assert "felt better than" not in prostm("plan", FIELD, "--array", "usx", "--preset", "felt").stdout
+
+
+@pytest.mark.long
+def test_a_run_reports_its_quality_in_the_same_four_numbers(prostm, tmp_path):
+    text = prostm("run", "--hand", "study", "--grid", "32", "--preset", "fast", "--seconds", "6", "--stepped",
+                  "--scene", "four-plumes", "--json", "run.json", "--record", "run.h5").stdout
+    quality = json.loads((tmp_path / "run.json").read_text())["quality"]
+    lines = text.splitlines()
+    first = next(i for i, line in enumerate(lines) if line.startswith("Quality of the plans")) + 1
+    names = ["shape by Eq. (1)", "felt shape", "felt strength", "spill"]
+    assert [line[2:20].strip() for line in lines[first:first + 4]] == names
+    assert quality["plans"] == 5
+    for line, metric, digits in ((0, "skill_0", 2), (1, "felt_skill", 2), (3, "spill", 3)):
+        median, low, high = (f"{quality[metric][name]:.{digits}f}" for name in ("median", "lowest", "highest"))
+        assert lines[first + line].endswith(f"{median} ({low} to {high})")
+    # a plan of the recording, made again, is as good as the run's
+    shapes = [json.loads(prostm("plan", "run.h5", "--frame", str(frame), "--preset", "fast", "--array", "usx",
+                                "--json", "-").stdout)["metrics"]["skill_0"] for frame in (60, 100, 140)]
+    assert quality["skill_0"]["lowest"] - 0.1 <= min(shapes) and max(shapes) <= quality["skill_0"]["highest"] + 0.1

@@ -50,10 +50,10 @@ def test_the_verdict_precedes_the_numbers(prostm, tmp_path):
     (tmp_path / "blob.json").write_text(json.dumps(blob_field()))
     lines, plan = planned(prostm, "blob.json")
     skill = plan["metrics"]["skill_0"]
-    assert lines[1] == (f"{len(plan['paths'])} paths render this field with skill {skill:.2f} "
-                        "(1 is perfect, 0 is no better than an even field)")
+    assert lines[1].startswith(f"{len(plan['paths'])} paths render this field; ")
+    assert lines[2] == f"  shape by Eq. (1)   {skill:.2f}"
     lines, plan = planned(prostm, "blob.json", "--method", "am", "--paths", "1")
-    assert "1 focus renders this field with skill " in "\n".join(lines)
+    assert "1 focus renders this field; " in "\n".join(lines)
     np.save(tmp_path / "even.npy", np.full((8, 8), 3.0))
     lines, plan = planned(prostm, "even.npy", "--cell-mm", "5")
     assert f"this even field with an error (RMSE) of {plan['metrics']['rmse']:.2f} of its pressure" in lines[1]
@@ -153,8 +153,8 @@ def test_a_plan_that_loses_to_a_control(prostm, tmp_path):
     lines, plan = planned(prostm, "page.png", "--cell-mm", "10")
     [loss] = [w for w in plan["warnings"] if "loses" in w]
     best = max(plan["controls"], key=lambda control: control["metrics"]["skill_0"])
-    assert f'loses to the control "{best["name"]}", skill {plan["metrics"]["skill_0"]:.2f} against ' in loss
-    assert lines.index(f"warning: {loss}") == 1 + lines.index(next(x for x in lines if "with skill" in x))
+    assert f'loses to the control "{best["name"]}", shape by Eq. (1) {plan["metrics"]["skill_0"]:.2f} against ' in loss
+    assert lines.index(f"warning: {loss}") == 1 + lines.index(next(x for x in lines if x.startswith("  spill ")))
 
 
 def test_impossible_sizes(refuses, tmp_path):

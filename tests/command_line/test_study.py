@@ -215,7 +215,7 @@ def test_a_rehearsal_runs_all_trials_and_is_distinguished_from_answers(prostm, t
     for participant in "12":
         said = prostm(*STUDY, participant, "--rehearse", "0").stdout
         assert f"Participant {participant}: 2 of 2 answers in answers/rehearsal-{participant}.jsonl." in said
-        levels = re.findall(r"^Stimuli of (.*):\n  estimated sensation level: about -?\d+ dB ", said, re.M)
+        levels = re.findall(r"^Quality of stimuli of ([a-z ]+),.*\n(?:  .*\n)+?  felt strength +about -?\d+ dB ", said, re.M)
         assert levels == ["stationary foci"]
     said = prostm("study", "analyse", "answers/rehearsal-1.jsonl", "answers/rehearsal-2.jsonl").stdout
     assert said.count("is a rehearsal: nobody felt anything") == 2

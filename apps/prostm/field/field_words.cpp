@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "field/quality_words.hpp"
 #include "prostm/core/text/number_text.hpp"
 
 namespace prostm::app {
@@ -140,8 +141,8 @@ std::vector<std::string> field_warnings(FieldKind kind, const TargetField& field
   return warnings;
 }
 
-std::string verdict(const TargetField& field, const Plan& plan, const Metrics& played,
-                    bool by_felt) {
+void print_verdict(std::FILE* out, const TargetField& field, const Plan& plan,
+                   const Metrics& played, const SensationInterval& interval) {
   const bool stands = !plan.foci.empty();
   const std::size_t count = stands ? plan.foci.size() : plan.paths.size();
   const bool one = count == 1;
@@ -149,18 +150,15 @@ std::string verdict(const TargetField& field, const Plan& plan, const Metrics& p
       fmt::format("{} {}", count, stands ? (one ? "focus" : "foci") : (one ? "path" : "paths"));
   const char* render = one ? "renders" : "render";
   if (is_even(field)) {
-    return fmt::format(
-        "{} {} this even field with an error (RMSE) of {:.2f} of its pressure; 0 is perfect", what,
-        render, played.rmse);
+    fmt::print(
+        out, "{} {} this even field with an error (RMSE) of {:.2f} of its pressure; 0 is perfect\n",
+        what, render, played.rmse);
+    print_sensation(out, played.sensation_level, interval);
+    return;
   }
-  const std::string felt =
-      !by_felt ? ""
-      : std::isfinite(played.felt_skill)
-          ? fmt::format(" as pressure and skill_8 {:.2f} as felt by the model", played.felt_skill)
-          : " as pressure; --array judges what is felt";
-  return fmt::format(
-      "{} {} this field with skill {:.2f}{} (1 is perfect, 0 is no better than an even field)",
-      what, render, played.skill_0, felt);
+  fmt::print(out, "{} {} this field; a shape of 1 is perfect, 0 is no better than an even field\n",
+             what, render);
+  print_quality_numbers(out, played, interval, "not computed without --array");
 }
 
 std::vector<std::string> control_warnings(const Metrics& played,
@@ -170,18 +168,14 @@ std::vector<std::string> control_warnings(const Metrics& played,
       [](const auto& a, const auto& b) { return a.metrics.skill_0 < b.metrics.skill_0; });
   if (best == controls.end() || best->metrics.skill_0 <= played.skill_0) return {};
   const ComparedText text = compared_text(played.skill_0, best->metrics.skill_0, 2);
-  return {fmt::format("the plan loses to the control \"{}\", skill {} against {}: {}", best->name,
-                      text.value, text.bound,
+  return {fmt::format("the plan loses to the control \"{}\", shape by Eq. (1) {} against {}: {}",
+                      best->name, text.value, text.bound,
                       by_felt ? "its pressure hardly resembles the field"
                               : "the percept will hardly resemble the field")};
 }
 
 void print_sensation(std::FILE* out, double level, const SensationInterval& interval) {
-  if (!std::isfinite(level)) return;
-  const char* sound = interval.sound == SoundSource::Nominal
-                          ? "; no sound level of this array was measured, so this is nominal"
-                          : "";
-  fmt::print(out, "  estimated sensation level: {}{}\n", sensation_words(level, interval), sound);
+  if (std::isfinite(level)) fmt::print(out, "  felt strength: {}\n", level_words(level, interval));
 }
 
 }  // namespace prostm::app

@@ -19,13 +19,13 @@ std::string field_in_words(const std::string& path, FieldKind kind, const Target
 std::vector<std::string> field_warnings(FieldKind kind, const TargetField& field,
                                         const FieldFileOptions& options);
 
-/// Returns one sentence that judges a plan for people who do not know the metrics. @param played
-/// metrics of the plan as it is played. @param by_felt whether the plan was chosen by its percept,
-/// at the cost of the pressure.
-std::string verdict(const TargetField& field, const Plan& plan, const Metrics& played,
-                    bool by_felt);
+/// Prints a verdict on a plan for people who do not know the metrics. @param played metrics of the
+/// plan as it is played.
+void print_verdict(std::FILE* out, const TargetField& field, const Plan& plan,
+                   const Metrics& played, const SensationInterval& interval);
 
-/// Returns a warning about the control that beats the plan, if any. @param by_felt as of verdict().
+/// Returns a warning about the control that beats the plan, if any. @param by_felt whether the plan
+/// was chosen by its percept, at the cost of the pressure.
 std::vector<std::string> control_warnings(const Metrics& played,
                                           const std::vector<Control>& controls, bool by_felt);
 

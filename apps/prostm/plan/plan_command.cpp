@@ -6,6 +6,7 @@
 
 #include "common.hpp"
 #include "field/field_words.hpp"
+#include "plan/fewer_paths.hpp"
 #include "plan/plan_pictures.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/commit.hpp"
@@ -23,7 +24,6 @@
 #include "prostm/plan/planner.hpp"
 #include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "prostm/score/physical.hpp"
-#include "prostm/score/plan_percept.hpp"
 #include "prostm/score/pooled.hpp"
 #include "prostm/score/score.hpp"
 
@@ -133,6 +133,7 @@ struct Result {
   std::optional<double> weighted;  ///< RMSE by the target's weights, where it has some
   std::vector<Control> controls;
   std::vector<std::string> warnings;  ///< of the field and of the plan
+  std::string advice;                 ///< about fewer paths, if they are felt better
   Plan other;                         ///< of another target, for the controls
 };
 
@@ -278,20 +279,11 @@ bool counts_on_own_width(const PipelineSettings& settings) {
   return settings.plan.traits().is_fitted();
 }
 
-/// Returns the percept of the plan as the array of the settings plays it.
-PlanPercept percept_of(const TargetField& target, const Plan& plan,
-                       const PipelineSettings& settings) {
-  TargetFrame frame;
-  frame.patches.push_back(target);
-  WorkerPool pool(settings.threads);
-  return plan_percept(plan, frame, 0, emit_settings(settings, max_pressure(target)),
-                      settings.emission_rate(), settings.transducers, pool);
-}
-
 void print_plan(std::FILE* out, const Result& r, const TargetField& target,
                 const PipelineSettings& settings, std::optional<double> own_width) {
   const std::string felt = felt_words(settings);
-  fmt::print(out, "{}\n", verdict(target, r.plan, r.quality.played, !felt.empty()));
+  print_verdict(out, target, r.plan, r.quality.played, sensation_interval(settings.transducers));
+  if (!r.advice.empty()) fmt::print(out, "  {}\n", r.advice);
   print_warnings(out, control_warnings(r.quality.played, r.controls, !felt.empty()));
   if (is_am(settings)) {
     print_foci(out, r.plan, r.stats, max_pressure(target), felt);
@@ -307,7 +299,6 @@ void print_plan(std::FILE* out, const Result& r, const TargetField& target,
     fmt::print(out, "  {:<44} {:>7.3f}\n", "this plan, by the field's weights", *r.weighted);
   }
   print_power(out, r.plan, power_limit(settings));
-  print_sensation(out, r.quality.played.sensation_level, sensation_interval(settings.transducers));
 }
 
 void write_results(const Result& r, const TargetField& target, const PipelineSettings& settings,
@@ -350,6 +341,11 @@ void judge(const TargetField& target, const PipelineSettings& settings,
   const PlanPercept percept = percept_of(target, r.plan, settings);
   r.quality.played.felt_skill = percept.skill;
   r.quality.played.sensation_level = percept.sensation_level;
+  const bool chosen = is_am(settings) || settings.plan.preset == Preset::Felt;
+  if (chosen || r.status != PlanStatus::Planned) return;
+  progress.next("computing the percepts of fewer paths");
+  const auto paths = static_cast<int>(r.plan.paths.size());
+  r.advice = fewer_paths_advice(target, settings, paths, r.quality.played);
 }
 
 }  // namespace

@@ -17,9 +17,9 @@
 #include "prostm/io/recorder.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/track/live/tracker_news.hpp"
-#include "run/felt_plans.hpp"
 #include "run/instant.hpp"
 #include "run/mute_watch.hpp"
+#include "run/run_quality.hpp"
 #include "run/run_summary.hpp"
 #include "run/view.hpp"
 
@@ -44,7 +44,7 @@ class Observer final : public RunObserver {
       const RecordedPlan made{plan.plan, plan.stats, plan.full_scale_pressure, plan.sigma};
       recorder_->append(contact.target, contact.hands, planned ? &made : nullptr, plan.gate);
     }
-    if (plan.status == PlanStatus::Planned) felt_.offer(contact, plan);
+    if (plan.status == PlanStatus::Planned) sample_.offer(contact, plan);
     if (picture_at_ && plan.status == PlanStatus::Planned) {
       const double away = std::abs(contact.target.time - *picture_at_);
       if (away < away_) {
@@ -99,7 +99,7 @@ class Observer final : public RunObserver {
   bool has_instant() const { return std::isfinite(away_); }
   const WorldFrame& contact() const { return contact_; }
   const PlanFrame& plan() const { return plan_; }
-  const FeltPlans& felt() const { return felt_; }
+  const PlanSample& sample() const { return sample_; }
 
  private:
   void say_whether_muted() {
@@ -138,7 +138,7 @@ class Observer final : public RunObserver {
   double away_ = std::numeric_limits<double>::infinity();
   WorldFrame contact_;
   PlanFrame plan_;
-  FeltPlans felt_;
+  PlanSample sample_;
   std::function<void(const RunSummary&)> report_;
   bool reported_ = false, array_gone_ = false;
   std::optional<MuteWatch> mutes_;
@@ -207,9 +207,10 @@ struct Ending {
     json["tracker"] = tracker_json(tracker);
     json["hand_file"] = reading_json(reading);
     json["array"] = pipeline.device().description();
-    std::optional<FeltLevels> felt;
-    if (summary.seconds >= kLeastFelt) felt = observer.felt().levels(settings);
-    json["sensation"] = felt_levels_json(felt, sensation_interval(settings.transducers));
+    const auto quality = observer.sample().quality(settings, summary.seconds >= kLeastFelt);
+    const SensationInterval interval = sensation_interval(settings.transducers);
+    json["quality"] = run_quality_json(quality);
+    json["sensation"] = run_sensation_json(quality, interval);
     json["settings"] = settings_to_json(settings_groups(settings));
     Attempts attempts;
     attempts.add([&] {
@@ -225,7 +226,7 @@ struct Ending {
     attempts.add([&] { draw(summary, never_came(tracker)); });
     attempts.add([&] {
       print_summary(out, summary, settings, verdict, tracker, reading, stopped_by);
-      print_felt_levels(out, felt, sensation_interval(settings.transducers));
+      print_run_quality(out, "the plans", quality, interval);
       say_files();
     });
     attempts.finish();

@@ -15,7 +15,7 @@
 #include "prostm/study/session/session.hpp"
 #include "prostm/study/session/spelling.hpp"
 #include "prostm/study/task/line_keys.hpp"
-#include "run/felt_plans.hpp"
+#include "run/run_quality.hpp"
 #include "run/view.hpp"
 #include "study/study_protocol.hpp"
 
@@ -43,24 +43,23 @@ class SessionPlans {
     const Method kind = plan.plan.foci.empty() ? Method::ProStm : Method::Am;
     plans_[static_cast<std::size_t>(kind)].offer(contact, plan);
   }
-  /// Prints how strongly they are felt, which takes about a second for each of the two.
+  /// Prints their quality, which takes about a second for each of the two.
   /// @param settings of the session; those of the output are the protocol's.
-  void print_levels(std::FILE* out, PipelineSettings settings, const Protocol& protocol) const {
+  void print_quality(std::FILE* out, PipelineSettings settings, const Protocol& protocol) const {
     for (const Method kind : {Method::ProStm, Method::Am}) {
       const auto method = std::ranges::find_if(protocol.methods, [&](const StudyMethod& of_study) {
         return of_study.settings.method == kind;
       });
       if (method == protocol.methods.end()) continue;
       settings.emit = method->settings.emit;
-      const auto levels = plans_[static_cast<std::size_t>(kind)].levels(settings);
-      if (!levels) continue;
-      fmt::print(out, "Stimuli of {}:\n", kind == Method::Am ? "stationary foci" : "paths");
-      print_felt_levels(out, levels, sensation_interval(settings.transducers));
+      const auto quality = plans_[static_cast<std::size_t>(kind)].quality(settings, true);
+      print_run_quality(out, kind == Method::Am ? "stimuli of stationary foci" : "stimuli of paths",
+                        quality, sensation_interval(settings.transducers));
     }
   }
 
  private:
-  std::array<FeltPlans, 2> plans_;  // by Method
+  std::array<PlanSample, 2> plans_;  // by Method
 };
 
 /// Ends the run when the session is closed, on a signal, or if the pages' server fails. Collects
@@ -283,7 +282,7 @@ void report(std::FILE* out, const StudySession& session, const ResponseFile& fil
                "the output missed; see prostm check.\n",
                summary.skipped_world_steps, summary.device.missed_blocks);
   }
-  plans.print_levels(out, settings, session.protocol());
+  plans.print_quality(out, settings, session.protocol());
 }
 
 }  // namespace
