@@ -125,7 +125,7 @@ void add_pipeline(Command command, CommonOptions& common, std::optional<std::str
   add_array(command, common);
 }
 
-std::array<Option, 2> add_address(Command command, RunOptionsGiven& o) {
+std::array<Option, 3> add_address(Command command, RunOptionsGiven& o) {
   auto port =
       command.add_option("--view-port", o.view_port,
                          "port of the page, 0 for any; default: 8470, or the next free one");
@@ -134,7 +134,13 @@ std::array<Option, 2> add_address(Command command, RunOptionsGiven& o) {
           .add_option("--view-address", o.view_address,
                       "address to serve the page on; default: 127.0.0.1, this machine alone")
           .type_name("ADDRESS");
-  return {port, address};
+  auto host = command
+                  .add_option("--view-host", o.view_hosts,
+                              "name of this machine, or of a proxy, under which the page may be "
+                              "opened; may be given several times")
+                  .type_name("NAME")
+                  .repeatable();
+  return {port, address, host};
 }
 
 void add_unbuilt(Command app, const std::string& name, const std::string& help) {

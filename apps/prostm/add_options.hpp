@@ -48,7 +48,7 @@ Option add_figure(Command command, CommonOptions& o, const std::string& help);
 /// the file is always given.
 void add_field_file(Command command, prostm::FieldFileOptions& o, std::optional<Option> of = {});
 /// Address and port of the pages. @return the two options.
-std::array<Option, 2> add_address(Command command, RunOptionsGiven& o);
+std::array<Option, 3> add_address(Command command, RunOptionsGiven& o);
 /// --hand, --hand-size and --tracker.
 void add_hand(Command command, CommonOptions& common, std::string& hand,
               std::optional<double>& hand_size);

@@ -42,6 +42,7 @@ struct RunOptionsGiven {
   bool lock_memory = false;
   bool view = false, stay = false;
   std::optional<std::string> view_address;
+  std::vector<std::string> view_hosts;
   std::optional<int> view_port;
   std::optional<std::string> tracker_file;  ///< written by the page's calibration
 };

@@ -55,6 +55,7 @@ from test_bad_input import changed, hand_lines
     (["run", "--stay"], "--stay needs --view; see prostm run --help"),
     (["run", "--view-port", "0"], "--view-port needs --view; see prostm run --help"),
     (["run", "--view-address", "127.0.0.1"], "--view-address needs --view; see prostm run --help"),
+    (["run", "--view-host", "lab"], "--view-host needs --view; see prostm run --help"),
     (["run", "--tracker-file", "t.json"], "--tracker-file needs --view; see prostm run --help"),
     (["run", "--view", "--tracker-file", "t.json"],
      "--tracker-file is for the pose of a tracker, and --hand scripted has none; leave it out, or give --hand "

@@ -42,6 +42,8 @@ def numbers(address):
     (["--view", "--as-fast-as-possible"], ["--view", "real time"]),
     (["--view", "--view-port", "70000"], ["70000", "65535"]),
     (["--view", "--view-address", "localhost"], ["localhost", "127.0.0.1"]),
+    (["--view", "--view-host", "http://lab"], ['--view-host "http://lab"', "without http://"]),
+    (["--view", "--view-host", "192.168.1.7"], ["--view-host", "addresses need no name"]),
 ])
 def test_bad_options_are_refused_in_a_sentence(refuses, arguments, words):
     refuses("run", "--seconds", "1", *arguments, words=words)

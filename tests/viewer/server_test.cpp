@@ -396,5 +396,25 @@ TEST(ServerPort, AllAddressesMeansNumericHostsOnly) {
   EXPECT_EQ(status_of(get(server.port(), "/", "Host: evil.example\r\n")), 403);
 }
 
+TEST(ServerWithNames, AnswersToThemAndToPagesOfTheirProxies) {
+  StandIn source;
+  ViewSettings settings = anywhere();
+  settings.hosts = {"lab", "Touch.example.org"};
+  const ViewServer server(settings, source, some_files());
+  const int port = server.port();
+  for (const char* host : {"lab", "LAB:8470", "touch.example.org", "localhost"})
+    EXPECT_EQ(status_of(get(port, "/", "Host: " + std::string(host) + "\r\n")), 200) << host;
+  for (const char* host : {"lab.evil.example", "[lab]", "lab:80x", "example.org", "192.168.1.7"})
+    EXPECT_EQ(status_of(get(port, "/", "Host: " + std::string(host) + "\r\n")), 403) << host;
+  Page proxied(port, "https://touch.example.org", "touch.example.org");
+  EXPECT_EQ(proxied.next_text().at("type"), "hello");
+  EXPECT_THROW(Page(port, "https://localhost", "localhost"), std::runtime_error);
+  EXPECT_THROW(Page(port, "https://evil.example", "lab"), std::runtime_error);
+  for (const char* host : {"", "http://lab", "lab:8470", "127.0.0.1", "::1", "la b"}) {
+    settings.hosts = {host};
+    EXPECT_THROW(ViewServer(settings, source, some_files()), InputError) << host;
+  }
+}
+
 }  // namespace
 }  // namespace prostm

@@ -14,14 +14,14 @@ void add_view(Command command, RunOptionsGiven& o) {
       command.add_flag("--view", o.view,
                        "serve a web page that shows and controls the run (docs/guides/viewing.md)");
   auto stay = command.add_flag("--stay", o.stay, "continue after --seconds, until Ctrl-C");
-  const auto [port, address] = add_address(command, o);
+  const auto [port, address, host] = add_address(command, o);
   auto tracker_file =
       command
           .add_option("--tracker-file", o.tracker_file,
                       "where the page's calibration saves the tracker's pose, for --tracker")
           .type_name("OUTPUT")
           .show_default(kTrackerFile);
-  for (Option option : {stay, port, address, tracker_file}) option.needs(view);
+  for (Option option : {stay, port, address, host, tracker_file}) option.needs(view);
 }
 
 /// Only a page writes the tracker's pose, so its default file need not be writable before that.

@@ -80,6 +80,7 @@ void View::start(bool guests) {
   ViewSettings settings;
   if (given_.view_address) settings.address = *given_.view_address;
   settings.port = given_.view_port;
+  settings.hosts = given_.view_hosts;
   settings.guests = guests;
   server_ = std::make_unique<ViewServer>(settings, *source_, files_);
 }

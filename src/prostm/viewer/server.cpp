@@ -14,6 +14,7 @@
 
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/text/host_port.hpp"
+#include "prostm/viewer/detail/http_answer.hpp"
 #include "prostm/viewer/detail/hub.hpp"
 #include "prostm/viewer/detail/session.hpp"
 
@@ -54,6 +55,13 @@ boost::system::error_code listen_on(tcp::acceptor& acceptor, const tcp::endpoint
 struct ViewServer::Impl {
   Impl(const ViewSettings& settings, ViewSource& source, std::span<const PageFile> files)
       : hub(settings, source, files) {
+    for (const std::string& host : settings.hosts) {
+      if (is_host_name(host)) continue;
+      throw InputError(fmt::format(
+          "--view-host \"{}\" must be a name such as lab.example.org, without http:// and without "
+          "a port; addresses need no name",
+          host));
+    }
     const auto address = listen_address(settings.address);
     listen(address);
     hub.any_address = !address.is_loopback();

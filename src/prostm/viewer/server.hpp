@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "prostm/viewer/page_files.hpp"
 #include "prostm/viewer/view_source.hpp"
@@ -16,6 +17,9 @@ struct ViewSettings {
   std::string address = "127.0.0.1";  ///< address to listen on, as a literal
   /// TCP port; 0: any free port. If not given, the first free port from kViewPort on.
   std::optional<int> port;
+  /// Names under which the page may be requested besides localhost, as of this machine in its
+  /// network or of a proxy.
+  std::vector<std::string> hosts;
   bool guests = false;         ///< serve /guest/live
   int max_pages = 16;          ///< largest number of WebSockets
   int max_connections = 64;    ///< largest number of connections, HTTP and WebSocket
@@ -41,7 +45,7 @@ class ViewServer {
  public:
   /// @param source, files must outlive the server.
   /// @throws InputError with a sentence: an address that is invalid or not of this machine, a port
-  /// that is in use.
+  /// that is in use, a host that is no name.
   ViewServer(const ViewSettings& settings, ViewSource& source, std::span<const PageFile> files);
   ~ViewServer();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/asio/ip/address.hpp>
 #include <cctype>
+#include <cstdint>
 
 #include "prostm/core/text/lower_case.hpp"
 
@@ -16,9 +17,11 @@ HttpAnswer refuse(unsigned status, std::string_view sentence) {
   return a;
 }
 
-/// Whether the Origin is a page served by this host.
-bool same_origin(std::string_view origin, std::string_view host) {
-  return origin.empty() || lower_case(origin) == "http://" + lower_case(host);
+/// Whether the Origin is a page served by this host. @param proxied whether it may be https.
+bool same_origin(std::string_view origin, std::string_view host, bool proxied) {
+  if (origin.empty()) return true;
+  const std::string own = lower_case(host), page = lower_case(origin);
+  return page == "http://" + own || (proxied && page == "https://" + own);
 }
 
 HttpAnswer file_answer(std::string_view path, std::span<const PageFile> files) {
@@ -46,19 +49,36 @@ bool is_port(std::string_view text) {
                      [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-}  // namespace
+/// Kinds of hosts that a Host header names.
+enum class HostKind : std::uint8_t { Foreign, Own, Named };
 
-bool host_allowed(std::string_view host, bool any_address) {
+HostKind kind_of(std::string_view host, const HttpScope& scope) {
   // NAME, NAME:PORT, [ADDRESS] or [ADDRESS]:PORT
   const bool brackets = !host.empty() && host.front() == '[';
   const std::size_t end = brackets ? host.find(']') : host.find(':');
-  if (brackets && end == std::string_view::npos) return false;
-  const std::string_view name = brackets ? host.substr(1, end - 1) : host.substr(0, end);
-  if (!is_port(host.substr(std::min(host.size(), brackets ? end + 1 : end)))) return false;
-  if (lower_case(name) == "localhost") return true;
+  if (brackets && end == std::string_view::npos) return HostKind::Foreign;
+  const std::string name = lower_case(brackets ? host.substr(1, end - 1) : host.substr(0, end));
+  if (!is_port(host.substr(std::min(host.size(), brackets ? end + 1 : end))))
+    return HostKind::Foreign;
+  if (name == "localhost") return HostKind::Own;
+  const auto is_it = [&](const std::string& own) { return lower_case(own) == name; };
+  if (!brackets && std::any_of(scope.hosts.begin(), scope.hosts.end(), is_it))
+    return HostKind::Named;
   boost::system::error_code wrong;
-  const auto address = boost::asio::ip::make_address(std::string(name), wrong);
-  return !wrong && (any_address || address.is_loopback());
+  const auto address = boost::asio::ip::make_address(name, wrong);
+  const bool own = !wrong && (scope.any_address || address.is_loopback());
+  return own ? HostKind::Own : HostKind::Foreign;
+}
+
+}  // namespace
+
+bool is_host_name(std::string_view name) {
+  constexpr std::size_t kLongest = 253;
+  const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '.'; };
+  boost::system::error_code not_an_address;
+  static_cast<void>(boost::asio::ip::make_address(std::string(name), not_an_address));
+  return !name.empty() && name.size() <= kLongest && not_an_address &&
+         std::all_of(name.begin(), name.end(), fits);
 }
 
 HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, HttpScope scope,
@@ -66,9 +86,14 @@ HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, H
   if (request.host.empty()) return refuse(400, "The request has no Host.\n");
   if (request.ambiguous)
     return refuse(400, "The request has more than one Host or more than one Origin.\n");
-  if (!host_allowed(request.host, scope.any_address))
-    return refuse(403, "This server answers only to its own address and to localhost.\n");
-  if (!same_origin(request.origin, request.host))
+  const HostKind host = kind_of(request.host, scope);
+  if (host == HostKind::Foreign) {
+    return refuse(
+        403,
+        "This server answers only to its own address, to localhost, and to the names that "
+        "--view-host gives.\n");
+  }
+  if (!same_origin(request.origin, request.host, host == HostKind::Named))
     return refuse(403, "Requests from pages of other sites are refused.\n");
   if (request.method != "GET" && request.method != "HEAD")
     return refuse(405, "Only GET and HEAD are supported.\n");

@@ -32,23 +32,24 @@ struct HttpAnswer {
 
 /// Settings of a server that affect its answers.
 struct HttpScope {
-  bool any_address = false;  ///< the server listens on more than loopback
-  bool guests = false;       ///< the server has a room for guests
+  bool any_address = false;                 ///< the server listens on more than loopback
+  bool guests = false;                      ///< the server has a room for guests
+  std::span<const std::string> hosts = {};  ///< names of ViewSettings::hosts
 };
 
 /// Answers GET and HEAD for the page's files, by exact path ("/index.html" is "/"), and for
 /// /numbers.json, and accepts the WebSockets /live and, with guests, /guest/live.
 ///
-/// 400: no Host, or two. 403: a Host that is a name other than localhost, or, unless `any_address`,
-/// an address that is not loopback (against DNS rebinding: a foreign site can resolve its name to
-/// our address); or an Origin of another host. Programs send no Origin and are accepted.
+/// 400: no Host, or two. 403: a Host that is a name other than localhost and those in `hosts`, or,
+/// unless `any_address`, an address that is not loopback (against DNS rebinding: a foreign site can
+/// resolve its name to our address); or an Origin of another host. Under a name of `hosts`, the
+/// Origin may be https, of a proxy. Programs send no Origin and are accepted.
 /// @param numbers makes the body of /numbers.json; empty if the numbers may not be seen now, which
 /// gives 403.
 HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, HttpScope scope,
                   const std::function<std::string()>& numbers);
 
-/// Whether a Host header is localhost or an address (loopback unless `any_address`), with or
-/// without a port.
-bool host_allowed(std::string_view host, bool any_address);
+/// Whether a name can be one of ViewSettings::hosts: letters, digits, '-' and '.', no address.
+bool is_host_name(std::string_view name);
 
 }  // namespace prostm

@@ -1,5 +1,7 @@
 #include "prostm/viewer/detail/session.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -36,7 +38,7 @@ void set_headers(http::fields& response, std::string_view host) {
   response.set("Content-Security-Policy",
                "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
                "media-src 'self' blob:; connect-src 'self'" +
-                   (host.empty() ? "" : " ws://" + std::string(host)) +
+                   (host.empty() ? "" : fmt::format(" ws://{0} wss://{0}", host)) +
                    "; object-src 'none'; base-uri 'none'; form-action 'none'; "
                    "frame-ancestors 'none'");
 }
@@ -87,8 +89,9 @@ void Session::on_request(beast::error_code wrong) {
   parts.origin = view(request[http::field::origin]);
   parts.ambiguous = request.count(http::field::host) > 1 || request.count(http::field::origin) > 1;
   parts.upgrade = websocket::is_upgrade(request);
-  HttpAnswer a = answer(parts, hub_.files, {hub_.any_address, hub_.settings.guests},
-                        [this] { return hub_.numbers(); });
+  HttpAnswer a =
+      answer(parts, hub_.files, {hub_.any_address, hub_.settings.guests, hub_.settings.hosts},
+             [this] { return hub_.numbers(); });
   if (a.live && static_cast<int>(hub_.pages.size()) >= hub_.settings.max_pages) {
     a = {};
     a.status = 503;
