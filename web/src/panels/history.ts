@@ -64,10 +64,10 @@ export class PerSecond {
 }
 
 /// Times of the samples with a value above the axis, and below it.
-export function beyond(times: number[], rows: number[][], top: number): { above: number[]; below: number[] } {
+export function beyond(times: number[], rows: number[][], bottom: number, top: number): { above: number[]; below: number[] } {
   return {
     above: times.filter((_, i) => rows.some((row) => row[i]! > top)),
-    below: times.filter((_, i) => rows.some((row) => row[i]! < 0)),
+    below: times.filter((_, i) => rows.some((row) => row[i]! < bottom)),
   };
 }
 

@@ -28,7 +28,7 @@ export class Strip {
   private readonly host = make("div", { class: "plot" });
   private view: StripsView = { span: 30, now: 0, at: null };
   private top = 1;
-  private cut = beyond([], [], 0); // times of samples outside the axis [s before now]
+  private cut = beyond([], [], 0, 0); // times of samples outside the axis [s before now]
 
   /// @param last whether it is the lowest strip, which shows the time axis
   constructor(readonly spec: StripSpec, private readonly last: boolean, private readonly dark: () => boolean) {
@@ -67,7 +67,10 @@ export class Strip {
     return {
       width: 300, height: 60, pxAlign: 1, legend: { show: false }, cursor: { show: false },
       padding: [6, 14, this.last ? 0 : 6, 0],
-      scales: { x: { time: false, range: () => [-this.view.span, 0] }, y: { range: () => [0, this.top] } },
+      scales: {
+        x: { time: false, range: () => [-this.view.span, 0] },
+        y: { range: () => [spec.bottom ?? 0, this.top] },
+      },
       axes: [
         {
           ...axis, size: this.last ? 18 : 2, gap: 2,
@@ -159,7 +162,7 @@ export class Strip {
 
   private scale(times: number[], rows: number[][]): void {
     this.top = this.spec.atMost ?? Math.max(...rows.map((row) => robustTop(row, this.spec.atLeast)));
-    this.cut = beyond(times, rows, this.top);
+    this.cut = beyond(times, rows, this.spec.bottom ?? 0, this.top);
   }
 
   /// Shows the newest values, or those at the pointer.

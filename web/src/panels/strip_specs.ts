@@ -21,6 +21,7 @@ export interface StripSpec {
   stacked?: boolean;
   atLeast: number; // lower limit of the axis's top
   atMost?: number; // upper limit of the axis's top
+  bottom?: number; // of the axis; default 0
   series: Series[];
 }
 
@@ -69,14 +70,13 @@ export const kStrips: StripSpec[] = [
   },
   {
     id: "quality", title: "Quality", unit: "", better: "higher", atLeast: 1, atMost: 1, series: [
-      { label: "correlation", value: of("correlation"), colour: kBlue, digits: 2 },
-      { label: "coverage", value: of("coverage"), colour: kGreen, digits: 2 },
-      { label: "skill", value: of("skill_8"), colour: kViolet, digits: 2 },
-      { label: "felt", value: of("felt_skill"), colour: kGrey, digits: 2 },
+      { label: "shape by Eq. (1)", value: of("skill_0"), colour: kBlue, digits: 2 },
+      { label: "felt shape", value: of("felt_skill"), colour: kViolet, digits: 2 },
     ],
   },
   {
-    id: "strength", title: "Strength felt", unit: "dB above the threshold of touch", better: "higher", atLeast: 10, series: [
+    id: "strength", title: "Felt strength", unit: "dB above the threshold of touch", better: "higher",
+    atLeast: 10, bottom: -30, series: [
       { label: "strongest place", value: of("sensation_level"), colour: kBlue, digits: 0 },
     ],
   },

@@ -9,27 +9,29 @@ interface Tile {
   parts: { name: NumberName; digits: number; after?: string }[];
 }
 export const kTiles: Tile[] = [
-  { label: "Plans", help: "Plans in the last second", parts: [{ name: "plan_hz", digits: 1, after: "Hz" }] },
+  {
+    label: "Shape by Eq. (1)",
+    help: "Of the played field with the target: 1 is perfect, 0 is no better than an even field",
+    parts: [{ name: "skill_0", digits: 2 }],
+  },
+  {
+    label: "Felt shape",
+    help: "Of what a model of the skin feels with the target, on the same scale; every five seconds",
+    parts: [{ name: "felt_skill", digits: 2 }],
+  },
+  {
+    label: "Felt strength",
+    help: "Of the strongest place, above the threshold of touch; below 0 most people feel nothing; every five seconds",
+    parts: [{ name: "sensation_level", digits: 0, after: "dB" }],
+  },
+  { label: "Spill", help: "Share of the played pressure beside the target", parts: [{ name: "spill", digits: 3 }] },
   {
     label: "Latency p50 · p99",
     help: "From a hand's movement to the first sample planned from it, over the last ten seconds; none without a hand",
     parts: [{ name: "latency_p50_ms", digits: 1, after: "·" }, { name: "latency_p99_ms", digits: 1, after: "ms" }],
   },
   {
-    label: "Correlation", help: "Of the played field with the target, by Eq. (1) with sigma_mm; 1 is best",
-    parts: [{ name: "correlation", digits: 3 }],
-  },
-  {
-    label: "RMSE",
-    help: "Of the played field, by Eq. (1) with sigma_mm, relative to the largest target pressure; 0 is best",
-    parts: [{ name: "rmse", digits: 3 }],
-  },
-  {
-    label: "Largest target", help: "The largest target pressure now",
-    parts: [{ name: "max_target_pa", digits: 2, after: "Pa" }],
-  },
-  {
-    label: "Missed", help: "Dropouts since the start: blocks of samples that came too late to be played",
+    label: "Missed blocks", help: "Dropouts since the start: blocks of samples that came too late to be played",
     parts: [{ name: "missed_blocks", digits: 0 }],
   },
 ];

@@ -208,7 +208,7 @@ describe("the page for screen readers", () => {
     const heads = await page.locator(".strip-head").allTextContents();
     expect(heads[0]).toBe("Stages ms · ↓ better");
     expect(await page.locator(".strip h3").allTextContents()).toEqual(
-      ["Stages", "Rates", "Latency", "Blocks", "Force on the hands", "Quality", "Strength felt", "RMSE"],
+      ["Stages", "Rates", "Latency", "Blocks", "Force on the hands", "Quality", "Felt strength", "RMSE"],
     );
   });
   afterAll(() => page.close());

@@ -17,8 +17,9 @@ describe("the top of an axis", () => {
 
 describe("values outside an axis", () => {
   it("are found above and below", () => {
-    const cut = beyond([-3, -2, -1, 0], [[0.9, -0.2, NaN, 0], [1.3, 0.4, 1, -4]], 1);
+    const cut = beyond([-3, -2, -1, 0], [[0.9, -0.2, NaN, 0], [1.3, 0.4, 1, -4]], 0, 1);
     expect(cut).toEqual({ above: [-3], below: [-2, 0] });
+    expect(beyond([-1, 0], [[-8, -31]], -30, 10)).toEqual({ above: [], below: [0] });
   });
 });
 

@@ -96,9 +96,10 @@ describe("the command line", () => {
 describe("a picture's caption", () => {
   it("has the date, the scale and the relevant settings", () => {
     const modulation = { ...speed, id: "am_frequency", label: "Modulation", unit: "Hz", value: 200, enabled: false };
-    const { title, parts } = caption(frameWith({ time: 12.345 }, { plan_hz: 25 }), stateWith([scene, speed, modulation]), 0.6, new Date("2026-01-02T03:04:05Z"));
+    const { title, parts } = caption(frameWith({ time: 12.345 }, { skill_0: 0.82, sensation_level: -8 }), stateWith([scene, speed, modulation]), 0.6, new Date("2026-01-02T03:04:05Z"));
     expect(title).toBe("prostm · 12.35 s of the run · 2026-01-02 03:04:05 UTC");
-    expect(parts).toContain("Plans 25.0 Hz");
+    expect(parts).toContain("Shape by Eq. (1) 0.82");
+    expect(parts).toContain("Felt strength -8 dB");
     expect(parts.join("\n")).toContain("colours: 0 to 0.60 Pa");
     expect(parts).toContain("Scene One wide plume");
     expect(parts).toContain("Speed 7 m/s");
