@@ -253,7 +253,7 @@ describe("a page that receives a negative quality", () => {
     let skill = 0.3;
     await other.routeWebSocket(/live/, (socket) => {
       const server = socket.connectToServer();
-      server.onMessage((m) => socket.send(typeof m === "string" ? m : withNumber(m, kNumbers.indexOf("skill_8"), skill)));
+      server.onMessage((m) => socket.send(typeof m === "string" ? m : withNumber(m, kNumbers.indexOf("skill_0"), skill)));
     });
     await other.goto(`${program.address}/#picture=off`);
     // pixels in the marks' colour below the axis's 0, where no line is drawn
@@ -264,7 +264,7 @@ describe("a page that receives a negative quality", () => {
       const { data } = canvas.getContext("2d")!.getImageData(...area);
       return data.filter((v, i) => i % 4 === 0 && v > 120 && data[i + 1]! < 90 && data[i + 2]! < 60 && data[i + 3]! > 200).length;
     });
-    const reading = other.locator('[data-strip="quality"] [data-series="skill"] b');
+    const reading = other.locator('[data-strip="quality"] [data-series="shape by Eq. (1)"] b');
     await expect.poll(() => reading.textContent()).toBe("0.30");
     expect(await marked()).toBe(0);
     skill = -0.4;
