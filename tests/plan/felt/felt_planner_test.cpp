@@ -305,14 +305,23 @@ TEST(FeltPreset, ChoosesAmongAllPlansAgainWhenItHasBecomeWorse) {
 }
 
 TEST(FeltPreset, MakesPlansAnewByTurnsIfThereIsNoTimeForAll) {
-  const TargetField target = fields::make(fields::Pattern::Noise, 10);
   PlanSettings quick = felt(0.1);
   quick.budget = 1e-6;
-  const auto lack = [&](int plans) {
-    return felt_plan(after_a_simpler_target(quick, target, plans), target, kSigma, felt_skins())
-        .lack;
+  Planner planner(quick, fields::kCells * fields::kCells);
+  std::size_t paths = 0;
+  const auto plan = [&](fields::Pattern pattern, int frame) {
+    TargetFrame targets;
+    targets.time = 0.04 * frame;
+    targets.patches.push_back(fields::make(pattern, 10));
+    Plan out;
+    PlanStats stats;
+    EXPECT_EQ(planner.plan(targets, out, stats), PlanStatus::Planned);
+    paths = out.paths.size();
   };
-  EXPECT_LT(lack(20), 0.9 * lack(1));
+  for (int frame = 0; frame < 40; ++frame) plan(fields::Pattern::Letter, frame);
+  EXPECT_EQ(paths, 4U) << "there is no time to compare";
+  for (int frame = 40; frame < 80; ++frame) plan(fields::Pattern::OnePlume, frame);
+  EXPECT_EQ(paths, 1U) << "the last plan costs much more, so others were made by turns";
 }
 
 TEST(FeltPreset, PlansEachHandAndForgetsOneThatLeft) {

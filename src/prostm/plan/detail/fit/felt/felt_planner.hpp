@@ -15,8 +15,8 @@ namespace prostm::planning {
 
 /// Makes several plans, with every number of paths, and keeps the plan with the least cost (P25) of
 /// its percept. In a sequence, continues the last plan, and compares it with others by turns. When
-/// it has become worse, makes all anew, or if there is no time, one in each plan. Within a time
-/// budget, it compares, and refines, fewer.
+/// it has become worse, makes all anew, or if there is no time, one in every third plan. Within a
+/// time budget, it compares, and refines, fewer.
 class FeltPlanner : public PatchPlanner {
  public:
   /// @param tables shared by the planners of all patches.
