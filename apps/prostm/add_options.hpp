@@ -47,7 +47,7 @@ Option add_figure(Command command, CommonOptions& o, const std::string& help);
 /// Options for reading a field's file. @param of the option that names the file, or nothing if
 /// the file is always given.
 void add_field_file(Command command, prostm::FieldFileOptions& o, std::optional<Option> of = {});
-/// Address and port of the pages. @return the two options.
+/// Port, address and names of the pages. @return the three options.
 std::array<Option, 3> add_address(Command command, RunOptionsGiven& o);
 /// --hand, --hand-size and --tracker.
 void add_hand(Command command, CommonOptions& common, std::string& hand,

@@ -106,6 +106,14 @@ def test_with_an_array_the_verdict_is_about_the_felt_field(prostm):
                           f"  spill              {metrics['spill']:.3f}"]
 
 
+def test_a_percept_beyond_the_models_limits_has_its_reason(prostm, tmp_path):
+    y, x = np.mgrid[0:140, 0:140]
+    np.save(tmp_path / "fine.npy", np.exp(-((x - 70.0) ** 2 + (y - 60.0) ** 2) / 200))
+    text = prostm("plan", "fine.npy", "--cell-mm", "1", "--array", "usx").stdout
+    assert "more than 128 cells along an edge" in line_with(text, "  felt shape  ")
+    assert "without --array" not in text and "felt strength" not in text
+
+
 def test_a_pressure_field_that_loses_to_a_control_does_not_imply_that_the_felt_field_does(prostm, settings):
     palm = [ROOT / "data" / "palm.npy", "--cell-mm", "5", "--method", "am"]
     warning = line_with(prostm("plan", *palm).stdout, "loses to the control")

@@ -6,6 +6,7 @@
 
 #include "common.hpp"
 #include "field/field_words.hpp"
+#include "field/quality_words.hpp"
 #include "prostm/acoustics/field/focus_width.hpp"
 #include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/commit.hpp"
@@ -116,9 +117,7 @@ void set_sensation(bool full_scale_given, PhysicalReport& r) {
 
 void print_felt(std::FILE* out, const PhysicalReport& r) {
   if (r.felt == nullptr) {
-    fmt::print(out,
-               "  the percept is not computed for loops of more than 250 ms, rasters of more than "
-               "128 cells along an edge, or cells of more than 20 mm\n");
+    fmt::print(out, "  the percept is {}\n", kPerceptLimits);
     return;
   }
   fmt::print(out,

@@ -142,7 +142,8 @@ std::vector<std::string> field_warnings(FieldKind kind, const TargetField& field
 }
 
 void print_verdict(std::FILE* out, const TargetField& field, const Plan& plan,
-                   const Metrics& played, const SensationInterval& interval) {
+                   const Metrics& played, const SensationInterval& interval,
+                   const std::string& unfelt) {
   const bool stands = !plan.foci.empty();
   const std::size_t count = stands ? plan.foci.size() : plan.paths.size();
   const bool one = count == 1;
@@ -158,7 +159,7 @@ void print_verdict(std::FILE* out, const TargetField& field, const Plan& plan,
   }
   fmt::print(out, "{} {} this field; a shape of 1 is perfect, 0 is no better than an even field\n",
              what, render);
-  print_quality_numbers(out, played, interval, "not computed without --array");
+  print_quality_numbers(out, played, interval, unfelt);
 }
 
 std::vector<std::string> control_warnings(const Metrics& played,

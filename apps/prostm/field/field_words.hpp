@@ -20,9 +20,10 @@ std::vector<std::string> field_warnings(FieldKind kind, const TargetField& field
                                         const FieldFileOptions& options);
 
 /// Prints a verdict on a plan for people who do not know the metrics. @param played metrics of the
-/// plan as it is played.
+/// plan as it is played. @param unfelt why its percept was not computed, if it was not.
 void print_verdict(std::FILE* out, const TargetField& field, const Plan& plan,
-                   const Metrics& played, const SensationInterval& interval);
+                   const Metrics& played, const SensationInterval& interval,
+                   const std::string& unfelt);
 
 /// Returns a warning about the control that beats the plan, if any. @param by_felt whether the plan
 /// was chosen by its percept, at the cost of the pressure.

@@ -8,7 +8,7 @@ namespace prostm::app {
 namespace {
 
 void print_number(std::FILE* out, const char* name, const std::string& value) {
-  if (!value.empty()) fmt::print(out, "  {:<18} {}\n", name, value);
+  fmt::print(out, "  {:<18} {}\n", name, value);
 }
 
 std::string range(const double Metrics::*metric, const Metrics* lowest, const Metrics* highest,

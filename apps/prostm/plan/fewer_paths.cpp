@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/pipeline/playable.hpp"
 #include "prostm/plan/planner.hpp"
@@ -34,7 +36,12 @@ std::string fewer_paths_advice(const TargetField& target, const PipelineSettings
     PlanStats stats;
     Planner planner(playable_plan_settings(with_fewer, settings.emission_rate()), target.size());
     if (planner.plan(target, plan, stats) != PlanStatus::Planned) continue;
-    const PlanPercept percept = percept_of(target, plan, with_fewer);
+    PlanPercept percept;
+    try {
+      percept = percept_of(target, plan, with_fewer);
+    } catch (const std::invalid_argument&) {
+      continue;  // the array reaches none of its focal points
+    }
     const bool better = percept.skill >= played.felt_skill + kLeastShape &&
                         percept.sensation_level >= played.sensation_level + kLeastStrength;
     if (!better || (best > 0 && percept.skill <= found.skill)) continue;

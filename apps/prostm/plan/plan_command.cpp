@@ -6,6 +6,7 @@
 
 #include "common.hpp"
 #include "field/field_words.hpp"
+#include "field/quality_words.hpp"
 #include "plan/fewer_paths.hpp"
 #include "plan/plan_pictures.hpp"
 #include "prostm/am/am_planner.hpp"
@@ -282,7 +283,8 @@ bool counts_on_own_width(const PipelineSettings& settings) {
 void print_plan(std::FILE* out, const Result& r, const TargetField& target,
                 const PipelineSettings& settings, std::optional<double> own_width) {
   const std::string felt = felt_words(settings);
-  print_verdict(out, target, r.plan, r.quality.played, sensation_interval(settings.transducers));
+  print_verdict(out, target, r.plan, r.quality.played, sensation_interval(settings.transducers),
+                own_width ? kPerceptLimits : "not computed without --array");
   if (!r.advice.empty()) fmt::print(out, "  {}\n", r.advice);
   print_warnings(out, control_warnings(r.quality.played, r.controls, !felt.empty()));
   if (is_am(settings)) {
@@ -342,7 +344,7 @@ void judge(const TargetField& target, const PipelineSettings& settings,
   r.quality.played.felt_skill = percept.skill;
   r.quality.played.sensation_level = percept.sensation_level;
   const bool chosen = is_am(settings) || settings.plan.preset == Preset::Felt;
-  if (chosen || r.status != PlanStatus::Planned) return;
+  if (chosen || !std::isfinite(percept.skill)) return;
   progress.next("computing the percepts of fewer paths");
   const auto paths = static_cast<int>(r.plan.paths.size());
   r.advice = fewer_paths_advice(target, settings, paths, r.quality.played);

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "field/quality_words.hpp"
 #include "prostm/emit/played.hpp"
@@ -32,7 +34,7 @@ int pressed_patch(const TargetFrame& frame) {
 }
 
 /// Sets median, lowest and highest of one metric over the plans that have it.
-std::size_t summarise(const std::vector<Metrics>& all, double Metrics::*metric, RunQuality& out) {
+void summarise(const std::vector<Metrics>& all, double Metrics::*metric, RunQuality& out) {
   std::vector<double> values;
   for (const Metrics& m : all) {
     if (std::isfinite(m.*metric)) values.push_back(m.*metric);
@@ -40,13 +42,12 @@ std::size_t summarise(const std::vector<Metrics>& all, double Metrics::*metric, 
   if (values.empty()) {
     for (Metrics* m : {&out.median, &out.lowest, &out.highest})
       m->*metric = std::numeric_limits<double>::quiet_NaN();
-    return 0;
+    return;
   }
   std::sort(values.begin(), values.end());
   out.median.*metric = 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
   out.lowest.*metric = values.front();
   out.highest.*metric = values.back();
-  return values.size();
 }
 
 }  // namespace
@@ -60,8 +61,7 @@ void PlanSample::offer(const WorldFrame& contact, const PlanFrame& plan) {
   kept_[static_cast<std::size_t>(place)] = {contact.target, plan};
 }
 
-Metrics PlanSample::score(const Kept& kept, const PipelineSettings& settings,
-                          bool with_percept) const {
+Metrics PlanSample::score(const Kept& kept, const PipelineSettings& settings, WorkerPool* pool) {
   EmitSettings emit = settings.emit;
   emit.full_scale_pressure = kept.plan.full_scale_pressure;
   const int patch = pressed_patch(kept.target);
@@ -70,12 +70,11 @@ Metrics PlanSample::score(const Kept& kept, const PipelineSettings& settings,
       played_pressures(kept.plan.plan, kept.target, emit, kept.plan.emission_rate);
   Metrics metrics = score_plan(kept.target.patches[place], kept.plan.plan, patch,
                                kept.plan.sigma[place], settings.plan.gain_law(), &played);
-  if (!with_percept) return metrics;
+  if (pool == nullptr) return metrics;
   emit.power_limit = power_limit(settings);
-  WorkerPool pool(settings.threads);
   try {
     const PlanPercept percept = plan_percept(kept.plan.plan, kept.target, patch, emit,
-                                             settings.emission_rate(), settings.transducers, pool);
+                                             settings.emission_rate(), settings.transducers, *pool);
     metrics.felt_skill = percept.skill;
     metrics.sensation_level = percept.sensation_level;
   } catch (const std::invalid_argument&) {
@@ -88,7 +87,9 @@ std::optional<RunQuality> PlanSample::quality(const PipelineSettings& settings,
                                               bool with_percept) const {
   if (kept_.empty()) return {};
   std::vector<Metrics> all;
-  for (const Kept& kept : kept_) all.push_back(score(kept, settings, with_percept));
+  WorkerPool pool(settings.threads);
+  for (const Kept& kept : kept_)
+    all.push_back(score(kept, settings, with_percept ? &pool : nullptr));
   RunQuality out;
   out.plans = all.size();
   for (const auto& [name, metric] : kReported) summarise(all, metric, out);

@@ -9,6 +9,7 @@
 
 #include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/core/random.hpp"
+#include "prostm/core/worker_pool.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 #include "prostm/score/score.hpp"
 
@@ -38,7 +39,8 @@ class PlanSample {
     TargetFrame target;
     PlanFrame plan;
   };
-  Metrics score(const Kept& kept, const PipelineSettings& settings, bool with_percept) const;
+  /// @param pool computes the percept; null: none is computed.
+  static Metrics score(const Kept& kept, const PipelineSettings& settings, WorkerPool* pool);
 
   std::vector<Kept> kept_;
   int offered_ = 0;
