@@ -35,7 +35,8 @@ set(type_js "text/javascript; charset=utf-8")
 set(type_css "text/css; charset=utf-8")
 set(type_svg "image/svg+xml")
 
-# .incbin makes the assembler read the bytes, at no cost for the compiler
+# .incbin makes the assembler read the bytes, at no cost for the compiler. ccache does not see them, so each file's hash is
+# in the source: a page that changed is compiled again.
 set(bytes "")
 set(rows "")
 set(count 0)
@@ -48,7 +49,8 @@ foreach(name IN LISTS names)
   if(name STREQUAL "index.html")
     set(path "/")
   endif()
-  string(APPEND bytes "asm(\".pushsection .rodata\\n.globl prostm_page_${count}, prostm_page_${count}_end\\n\"
+  file(SHA256 ${WEB}/dist/${name} hash)
+  string(APPEND bytes "asm(\"/* ${hash} */ .pushsection .rodata\\n.globl prostm_page_${count}, prostm_page_${count}_end\\n\"
     \".hidden prostm_page_${count}\\n.hidden prostm_page_${count}_end\\n\"
     \"prostm_page_${count}: .incbin \\\"${WEB}/dist/${name}\\\"\\n\"
     \"prostm_page_${count}_end: .byte 0\\n.popsection\\n\");
