@@ -20,6 +20,7 @@ constexpr FeltEffort kMovingOn = {8, 0.3F}, kMovedOn = {6, 0.5F};
 constexpr FeltEffort kBriefly = {6, 0.3F};  // each of them within a short budget
 constexpr double kFirst = 2e-3;             // assumed time of the first plan of a candidate [s]
 constexpr int kRefiningRounds = 4;          // of moving points and mending paths
+constexpr int kFollowingRounds = 2;         // the same for a plan that continues the last one
 constexpr int kPlansPerRival = 3;           // plans of a sequence for each comparison
 constexpr float kHysteresis = 0.04F;        // cost that another candidate must save
 constexpr float kCountChange =
@@ -236,7 +237,7 @@ void FeltPlanner::continue_plan(const PatchTask& task, PlanStats& stats) {
   if (!replaced) next.fit->find(with_paths(task, next.paths), stats);
   if (!has_time(task, times_.refining)) return end_quickly(task, stats);
   thorough_.continue_from(fine_);
-  refine(task, next, 1, stats);
+  refine(task, next, kFollowingRounds, stats);
   fine_.continue_from(thorough_);
 }
 

@@ -13,6 +13,10 @@ namespace {
 constexpr float kSpare = 1.05F;
 constexpr double kLeastPace = 0.7;    // lower bound of the pace in that division
 constexpr float kLeastShare = 1e-6F;  // lower bound of a point's share of a lap, as a divisor
+// Share of the pressure that transducers at full output give to several focal points, where (P20)
+// assumes all of it: (E|Σ_k e^{iφ_k}|)²/K for K waves of random phase, 0.81, 0.83, 0.81 and 0.80
+// for K = 2, 3, 4 and 8.
+constexpr float kSharedOutput = 0.81F;
 
 }  // namespace
 
@@ -85,7 +89,8 @@ float FeltProblem::add_envelope(float felt) {
 
 FeltRating FeltProblem::rating() const {
   const std::span<const float> percept = loss_.percept(kNominalSkin);
-  return {loss_.coarse_lack(), *std::max_element(percept.begin(), percept.end())};
+  const float strength = *std::max_element(percept.begin(), percept.end());
+  return {loss_.coarse_lack(), paths_.size() > 1 ? kSharedOutput * strength : strength};
 }
 
 float FeltProblem::evaluate(std::span<const float> root) {
