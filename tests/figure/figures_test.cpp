@@ -233,21 +233,31 @@ TEST(DrawPhysical, ShowsEveryPartOfItsInput) {
   field.envelope = field.mean = example.figure.reconstruction;
   field.largest = 40.0;
   field.largest_mean = 40.0;
-  PhysicalFigure figure{&example.target, &example.plan, &field, &example.figure.metrics, "Skin"};
+  FeltField felt;
+  felt.percept = field.envelope;
+  felt.largest = 1e-6;
+  PhysicalFigure figure{&example.target, &example.plan, &field, &felt, true, "Skin", "felt 1"};
   const auto bytes = [&] {
     draw_physical(figure, folder.file("a.png"));
     return read_file(folder.file("a.png"));
   };
   const std::string whole = bytes();
   EXPECT_TRUE(whole == bytes());
-  figure.metrics = nullptr;  // no target: two panels
+  figure.has_target = false;  // two panels
   EXPECT_LT(bytes().size(), whole.size());
-  figure.metrics = &example.figure.metrics;
+  figure.has_target = true;
+  figure.summary = "felt 2";
+  EXPECT_FALSE(bytes() == whole);
+  figure.summary = "felt 1";
   field.envelope[400] += 20.0;
   EXPECT_FALSE(bytes() == whole);
   field.envelope = example.figure.reconstruction;
-  field.mean.assign(field.mean.size(), 0.0);
+  felt.percept.assign(felt.percept.size(), 0.0);
   EXPECT_FALSE(bytes() == whole);
+  figure.felt = nullptr;  // the mean instead of the percept
+  const std::string without = bytes();
+  field.mean.assign(field.mean.size(), 0.0);
+  EXPECT_FALSE(bytes() == without);
   test::input_error([&] { draw_physical(figure, folder.file("a.gif")); });
 }
 

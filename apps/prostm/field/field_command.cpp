@@ -13,6 +13,7 @@
 #include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/units.hpp"
+#include "prostm/emit/played.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/io/field/field_file.hpp"
 #include "prostm/io/physical_file.hpp"
@@ -29,6 +30,7 @@ struct Input {
   Plan plan;
   TargetField raster;
   double full_scale_pressure = 0.0;  // full scale stated by the plan; 0 without one
+  double sigma = 0.0;                // focal width that the plan was made for [m]; 0: unknown
   bool has_target = false;
 };
 
@@ -44,7 +46,7 @@ Input read_input(const FieldOptionsGiven& given) {
                      ": has a path or focus on a second hand; the field is computed for plans of "
                      "one");
   }
-  Input input{file.plan, file.raster, file.full_scale_pressure, false};
+  Input input{file.plan, file.raster, file.full_scale_pressure, file.sigma, false};
   if (given.target.empty()) return input;
   input.raster = read_field(given.target, given.file);
   input.has_target = true;
@@ -62,10 +64,8 @@ Input read_input(const FieldOptionsGiven& given) {
 }
 
 void print_loop(std::FILE* out, const PhysicalReport& r) {
-  fmt::print(out, "{} on {}, {}: a loop of {:.1f} ms, periods within {:.1f} % of the plan's\n",
-             r.plan, r.array->name, r.solver, 1e3 * r.loop->samples / r.loop->sample_rate,
-             100.0 * r.loop->largest_stretch());
-  print_warnings(out, r.warnings);
+  fmt::print(out, "  a loop of {:.1f} ms, periods within {:.1f} % of the plan's\n",
+             1e3 * r.loop->samples / r.loop->sample_rate, 100.0 * r.loop->largest_stretch());
   for (std::size_t i = 0; i < r.loop->played.paths.size(); ++i) {
     const PlayedPath& path = r.loop->played.paths[i];
     fmt::print(out, "  path {}: {:.2f} m/s, {:.2f} ms a lap\n", i + 1, path.speed,
@@ -130,7 +130,19 @@ void print_felt(std::FILE* out, const PhysicalReport& r) {
                100.0 * r.ghosts->largest);
   }
   fmt::print(out, "\n");
-  print_sensation(out, r.sensation_level, r.sensation_interval);
+}
+
+/// Prints how good the field is; without a target only its strength.
+void print_quality(std::FILE* out, const PhysicalReport& r) {
+  fmt::print(out, "{} on {}, {}{}\n", r.plan, r.array->name, r.solver,
+             r.quality == nullptr ? "; no target to compare with, --field FILE gives one"
+                                  : "; a shape of 1 is perfect, 0 is no better than an even field");
+  if (r.quality != nullptr) {
+    print_quality_numbers(out, *r.quality, r.sensation_interval, kPerceptLimits);
+  } else if (r.felt != nullptr) {
+    print_sensation(out, r.sensation_level, r.sensation_interval);
+  }
+  print_warnings(out, r.warnings);
 }
 
 void print_spectrum(std::FILE* out, const PhysicalReport& r) {
@@ -148,10 +160,7 @@ void print_spectrum(std::FILE* out, const PhysicalReport& r) {
 }
 
 void print_scores(std::FILE* out, const PhysicalReport& r) {
-  if (r.envelope_metrics == nullptr) {
-    fmt::print(out, "  no target to compare with; --field FILE gives one\n");
-    return;
-  }
+  if (r.envelope_metrics == nullptr) return;
   std::vector<MetricsRow> rows;
   rows.emplace_back("envelope: the largest over the loop", *r.envelope_metrics);
   if (r.felt_metrics != nullptr) rows.emplace_back("felt: perceived intensity", *r.felt_metrics);
@@ -209,16 +218,28 @@ LoopDriveResult solve(const TransducerArray& array, const Medium& air, const Loo
 /// The results that a report refers to.
 struct Judgement {
   FeltField felt;
-  Metrics envelope, mean, of_felt;
+  Metrics quality, envelope, mean, of_felt;
   Ghosts ghosts;
 };
 
+/// Returns the quality by Eq. (1), at the width that the plan was made for, as `prostm plan` does.
+Metrics score_by_model(const Input& input, const PipelineSettings& settings,
+                       const EmitSettings& emit) {
+  TargetFrame frame;
+  frame.patches.push_back(input.raster);
+  const double sigma = input.sigma > 0.0 ? input.sigma : settings.sigma();
+  const SegmentPressures played =
+      played_pressures(input.plan, frame, emit, settings.emission_rate());
+  return score_plan(input.raster, input.plan, 0, sigma, settings.plan.gain_law(), &played);
+}
+
 /// Compares the field with the target, and its percept too if `report` has it.
-void judge(const Input& input, const PlanSettings& settings, PhysicalReport& report,
-           Judgement& out) {
+/// @param quality quality by Eq. (1).
+void judge(const Input& input, const Metrics& quality, PhysicalReport& report, Judgement& out) {
   const TargetField& target = input.raster;
-  const double coverage =
-      score_plan(target, input.plan, 0, settings.sigma, settings.gain_law()).coverage;
+  const double coverage = quality.coverage;
+  out.quality = quality;
+  report.quality = &out.quality;
   out.envelope = score_physical(target, report.field->envelope, coverage);
   out.mean = score_physical(target, report.field->mean, coverage);
   report.envelope_metrics = &out.envelope;
@@ -226,22 +247,32 @@ void judge(const Input& input, const PlanSettings& settings, PhysicalReport& rep
   if (report.felt == nullptr) return;
   out.of_felt = score_physical(target, out.felt.percept, coverage);
   out.ghosts = ghosts_of(target, out.felt.percept);
+  out.quality.felt_skill = out.of_felt.skill_8;
+  out.quality.sensation_level = report.sensation_level;
   report.felt_metrics = &out.of_felt;
   report.ghosts = &out.ghosts;
+}
+
+/// Returns the line under the title of the figure.
+std::string summary_of(const PhysicalReport& r) {
+  if (r.quality != nullptr) return quality_line(*r.quality, r.sensation_interval);
+  if (r.felt == nullptr || !std::isfinite(r.sensation_level)) return {};
+  return "felt strength " + level_words(r.sensation_level, r.sensation_interval);
 }
 
 void tell(const PhysicalReport& report, const Input& input, const FieldOptionsGiven& given) {
   if (!given.common.json.empty()) write_file(given.common.json, physical_to_json(report));
   if (!given.common.figure.empty()) {
-    draw_physical({&input.raster, &input.plan, report.field, report.envelope_metrics,
-                   fmt::format("{} on {}", given.plan, report.array->name)},
+    draw_physical({&input.raster, &input.plan, report.field, report.felt, input.has_target,
+                   fmt::format("{} on {}", given.plan, report.array->name), summary_of(report)},
                   given.common.figure);
   }
   std::FILE* out = prose(given.common.json);
-  print_loop(out, report);
-  print_levels(out, report);
-  print_power(out, report);
+  print_quality(out, report);
   print_felt(out, report);
+  print_levels(out, report);
+  print_loop(out, report);
+  print_power(out, report);
   print_spectrum(out, report);
   print_scores(out, report);
   say_written(out, given.common.figure);
@@ -272,8 +303,8 @@ int field_command(const FieldOptionsGiven& given) {
   const Input input = read_input(given);
   TargetFrame frame;
   frame.patches.push_back(input.raster);
-  const LoopSamples loop =
-      plan_loop(input.plan, frame, emission_of(all, input), all.emission_rate());
+  const EmitSettings emit = emission_of(all, input);
+  const LoopSamples loop = plan_loop(input.plan, frame, emit, all.emission_rate());
   const Medium air;
   Progress progress("solving");
   const LoopDriveResult drives = solve(array, air, loop, given, progress);
@@ -306,7 +337,7 @@ int field_command(const FieldOptionsGiven& given) {
     set_sensation(given.full_scale_pa > 0.0, report);
     if (given.felt_spectrum) report.spectrum = felt_spectrum(input.raster, skin.motion());
   }
-  if (input.has_target) judge(input, all.plan, report, judgement);
+  if (input.has_target) judge(input, score_by_model(input, all, emit), report, judgement);
   progress.clear();
   tell(report, input, given);
   return 0;

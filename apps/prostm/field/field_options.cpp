@@ -31,7 +31,8 @@ void add_field(Command app, Work& work) {
                    "also print the percept of each harmonic of the loop");
   add_input(command, o->common.files, "--settings", o->common.settings_file,
             "settings of any stage, a TOML file (docs/reference/files.md)");
-  add_figure(command, o->common, "target, envelope, mean and difference (.png, .svg or .pdf)");
+  add_figure(command, o->common,
+             "target, radiation pressure, percept and difference (.png, .svg or .pdf)");
   add_json(command, o->common.files, o->common.json);
   command.footer(
       "Example:\n  prostm field palm.plan.json --field data/palm.npy --cell-mm 5 --array autd3 "

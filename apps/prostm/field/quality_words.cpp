@@ -26,6 +26,15 @@ std::string level_words(double level, const SensationInterval& interval) {
   return sensation_words(level, interval) + sound;
 }
 
+std::string quality_line(const Metrics& metrics, const SensationInterval& interval) {
+  std::string line = fmt::format("shape by Eq. (1) {:.2f}", metrics.skill_0);
+  if (std::isfinite(metrics.felt_skill))
+    line += fmt::format(" · felt shape {:.2f}", metrics.felt_skill);
+  if (std::isfinite(metrics.sensation_level))
+    line += " · felt strength " + level_words(metrics.sensation_level, interval);
+  return line + fmt::format(" · spill {:.3f}", metrics.spill);
+}
+
 void print_quality_numbers(std::FILE* out, const Metrics& metrics,
                            const SensationInterval& interval, const std::string& unfelt,
                            const Metrics* lowest, const Metrics* highest) {

@@ -17,6 +17,9 @@ inline constexpr const char* kPerceptLimits =
 /// Returns how strongly a stimulus is felt, and whether that is nominal. @param level not NaN.
 std::string level_words(double level, const SensationInterval& interval);
 
+/// Returns the four numbers in one line; those that are not known are omitted.
+std::string quality_line(const Metrics& metrics, const SensationInterval& interval);
+
 /// Prints shape by Eq. (1), felt shape, felt strength and spill, one line each.
 /// @param unfelt why there is no percept, if so. @param lowest, highest if not null, the
 /// range of the numbers, whose medians `metrics` are.

@@ -207,7 +207,8 @@ struct Ending {
     json["tracker"] = tracker_json(tracker);
     json["hand_file"] = reading_json(reading);
     json["array"] = pipeline.device().description();
-    const auto quality = observer.sample().quality(settings, summary.seconds >= kLeastFelt);
+    const bool felt = summary.seconds >= kLeastFelt;
+    const auto quality = observer.sample().quality(settings, felt);
     const SensationInterval interval = sensation_interval(settings.transducers);
     json["quality"] = run_quality_json(quality);
     json["sensation"] = run_sensation_json(quality, interval);
@@ -226,7 +227,10 @@ struct Ending {
     attempts.add([&] { draw(summary, never_came(tracker)); });
     attempts.add([&] {
       print_summary(out, summary, settings, verdict, tracker, reading, stopped_by);
-      print_run_quality(out, "the plans", quality, interval);
+      print_run_quality(out, "the plans", quality, interval,
+                        felt
+                            ? kPerceptLimits
+                            : fmt::format("not computed for runs of less than {:g} s", kLeastFelt));
       say_files();
     });
     attempts.finish();

@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "field/quality_words.hpp"
 #include "prostm/emit/played.hpp"
 #include "prostm/io/sensation_json.hpp"
 #include "prostm/score/plan_percept.hpp"
@@ -124,8 +123,8 @@ nlohmann::ordered_json run_sensation_json(const std::optional<RunQuality>& quali
 }
 
 void print_run_quality(std::FILE* out, const std::string& what,
-                       const std::optional<RunQuality>& quality,
-                       const SensationInterval& interval) {
+                       const std::optional<RunQuality>& quality, const SensationInterval& interval,
+                       const std::string& unfelt) {
   if (!quality) return;
   const bool one = quality->plans == 1;
   fmt::print(out,
@@ -133,8 +132,8 @@ void print_run_quality(std::FILE* out, const std::string& what,
              "than an even field\n",
              what,
              one ? "" : fmt::format(": median and range of {} drawn at random", quality->plans));
-  print_quality_numbers(out, quality->median, interval, "not computed",
-                        one ? nullptr : &quality->lowest, one ? nullptr : &quality->highest);
+  print_quality_numbers(out, quality->median, interval, unfelt, one ? nullptr : &quality->lowest,
+                        one ? nullptr : &quality->highest);
 }
 
 }  // namespace prostm::app

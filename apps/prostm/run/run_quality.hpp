@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "field/quality_words.hpp"
 #include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/worker_pool.hpp"
@@ -53,8 +54,10 @@ nlohmann::ordered_json run_quality_json(const std::optional<RunQuality>& quality
 nlohmann::ordered_json run_sensation_json(const std::optional<RunQuality>& quality,
                                           const SensationInterval& interval);
 
-/// Prints the quality; nothing without plans. @param what the plans, in the plural.
+/// Prints the quality; nothing without plans. @param what the plans, in the plural. @param unfelt
+/// why there is no percept, if so.
 void print_run_quality(std::FILE* out, const std::string& what,
-                       const std::optional<RunQuality>& quality, const SensationInterval& interval);
+                       const std::optional<RunQuality>& quality, const SensationInterval& interval,
+                       const std::string& unfelt = kPerceptLimits);
 
 }  // namespace prostm::app

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "prostm/plan/planner.hpp"
+#include "prostm/score/felt.hpp"
 #include "prostm/score/physical.hpp"
 #include "prostm/score/score.hpp"
 #include "prostm/target/target_field.hpp"
@@ -71,13 +72,15 @@ struct PhysicalFigure {
   const TargetField* raster = nullptr;  ///< the skin; the target if it is known
   const Plan* plan = nullptr;
   const PhysicalField* field = nullptr;
-  const Metrics* metrics = nullptr;  ///< metrics of the envelope; null: there is no target to show
-  std::string title;
+  const FeltField* felt = nullptr;  ///< the percept; null: not computed
+  bool has_target = false;          ///< whether the raster is a target
+  std::string title, summary;       ///< a line each
 };
-/// Draws panels side by side: target, envelope and mean, each over its own maximum, and the
-/// difference of the envelope (scaled as for its score) and the target, over the target's maximum;
-/// without a target only envelope and mean. With axes in mm and the paths. @throws InputError when
-/// the file cannot be written.
+/// Draws panels side by side: target, envelope and percept, each over its own maximum, and the
+/// difference of the percept (scaled as for its score) and the target, over the target's maximum;
+/// the mean instead of the percept, and the difference of the envelope, if the percept is unknown.
+/// Without a target the first and the last panel are omitted. With axes in mm and the paths.
+/// @throws InputError when the file cannot be written.
 void draw_physical(const PhysicalFigure& figure, const std::string& path);
 
 /// A separate point of a chart.

@@ -1,4 +1,4 @@
-/// Draws the pressure of an array on the skin, next to its target.
+/// Draws the pressure of an array on the skin and its percept, next to the target.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,19 +40,18 @@ void difference_bar(Canvas& canvas, const Box& box) {
       {.size = 11.0, .colour = figure::kFaintInk, .align = figure::Align::Centre, .upwards = true});
 }
 
-/// The difference of the envelope, scaled as for its score, and the target, over the target's
-/// maximum.
-std::vector<double> differences(const TargetField& target, const std::vector<double>& envelope) {
+/// The difference of a field, scaled as for its score, and the target, over the target's maximum.
+std::vector<double> differences(const TargetField& target, const std::vector<double>& field) {
   double with_target = 0.0, with_itself = 0.0;
   for (std::size_t c = 0; c < target.size(); ++c) {
-    with_target += target.pressure[c] * envelope[c];
-    with_itself += envelope[c] * envelope[c];
+    with_target += target.pressure[c] * field[c];
+    with_itself += field[c] * field[c];
   }
   const double gain = with_itself > 0.0 ? with_target / with_itself : 0.0;
   const double full = std::max(max_pressure(target), 1e-300);
   std::vector<double> out(target.size());
   for (std::size_t c = 0; c < out.size(); ++c) {
-    out[c] = (gain * envelope[c] - target.pressure[c]) / full;
+    out[c] = (gain * field[c] - target.pressure[c]) / full;
   }
   return out;
 }
@@ -61,7 +60,7 @@ class Page {
  public:
   Page(const PhysicalFigure& given, const std::string& path)
       : given_(given),
-        panels_(given.metrics != nullptr ? 4 : 2),
+        panels_(given.has_target ? 4 : 2),
         extent_(figure::extent_of(*given.raster)),
         height_(figure::fitted({0.0, 0.0, kPanel, kPanel}, extent_).height),
         canvas_(path, kLeft + panels_ * (kPanel + kGap) + kBar * (panels_ > 2 ? 2 : 1),
@@ -69,25 +68,20 @@ class Page {
 
   void draw() {
     canvas_.text(Vec2(kLeft, 36.0), given_.title, {.size = 18.0, .bold = true});
-    if (given_.metrics != nullptr) {
-      std::string line = "envelope: ";
-      const char* before = "";
-      for (const Quantity<Metrics>& metric : quantities<Metrics>()) {
-        const double value = value_of(metric, *given_.metrics);
-        if (std::isnan(value)) continue;
-        line += fmt::format("{}{} {}", before, metric.label, figure::number_text(value, 3));
-        before = " · ";
-      }
-      canvas_.text(Vec2(kLeft, 58.0), line, {.size = 12.0, .colour = figure::kFaintInk});
-      heat("target p*", given_.raster->pressure, max_pressure(*given_.raster));
-    }
+    canvas_.text(Vec2(kLeft, 58.0), given_.summary, {.size = 12.0, .colour = figure::kFaintInk});
+    if (given_.has_target) heat("target p*", given_.raster->pressure, max_pressure(*given_.raster));
     const PhysicalField& field = *given_.field;
-    heat(fmt::format("envelope, up to {} Pa", figure::number_text(field.largest, 1)),
+    heat(fmt::format("radiation pressure, up to {} Pa", figure::number_text(field.largest, 1)),
          field.envelope, field.largest);
-    heat(fmt::format("mean, up to {} Pa", figure::number_text(field.largest_mean, 2)), field.mean,
-         field.largest_mean);
-    figure::colour_bar(canvas_, {next_ - kGap + 14.0, kTop, 12.0, height_}, "p / largest");
-    if (given_.metrics != nullptr) difference();
+    if (const FeltField* felt = given_.felt; felt != nullptr) {
+      heat(fmt::format("felt, up to {} µm", figure::number_text(1e6 * felt->largest, 2)),
+           felt->percept, felt->largest);
+    } else {
+      heat(fmt::format("mean, up to {} Pa", figure::number_text(field.largest_mean, 2)), field.mean,
+           field.largest_mean);
+    }
+    figure::colour_bar(canvas_, {next_ - kGap + 14.0, kTop, 12.0, height_}, "value / largest");
+    if (given_.has_target) compare();
     canvas_.save();
   }
 
@@ -106,16 +100,24 @@ class Page {
     finish(p, title);
   }
 
-  void difference() {
+  void compare() {
+    if (given_.felt != nullptr) {
+      difference("felt, scaled, − target", given_.felt->percept);
+    } else {
+      difference("pressure, scaled, − target", given_.field->envelope);
+    }
+  }
+
+  void difference(const std::string& title, const std::vector<double>& field) {
     next_ += kBar;
     const TargetField& target = *given_.raster;
-    const std::vector<double> values = differences(target, given_.field->envelope);
+    const std::vector<double> values = differences(target, field);
     Panel p = panel();
     p.cells(target.rows, target.cols, [&](int row, int col) {
       const std::size_t c = target.index(row, col);
       return target.skin[c] != 0 ? difference_colour(values[c]) : figure::kNoSkin;
     });
-    finish(p, "envelope, scaled, − target");
+    finish(p, title);
     difference_bar(canvas_, {next_ - kGap + 14.0, kTop, 12.0, height_});
   }
 

@@ -102,6 +102,7 @@ std::string physical_to_json(const PhysicalReport& report) {
                    {"amplitude_pa_m", array.amplitude},
                    {"amplitude_interval_pa_m", {array.amplitude_low, array.amplitude_high}},
                    {"solver", report.solver}};
+  document["quality"] = metrics_or_null(report.quality);
   document["loop"] = loop_json(*report.loop);
   document["paths"] = played_to_json(report.loop->played);
   document["warnings"] = report.warnings;

@@ -21,6 +21,9 @@ struct PhysicalReport {
   const LoopDriveResult* drives = nullptr;
   const PhysicalField* field = nullptr;
   FocusAccuracy focus;
+  /// Shape and spill by Eq. (1), felt shape, and felt strength, as in a plan's file; null without a
+  /// target.
+  const Metrics* quality = nullptr;
   const Metrics* envelope_metrics = nullptr;  ///< null without a target
   const Metrics* mean_metrics = nullptr;
   const FeltField* felt = nullptr;  ///< null for loops whose perception is not computed

@@ -208,6 +208,9 @@ PlanFile plan_from_json(std::string_view text, const std::string& name) {
         root.at("full_scale_pressure", "a number").number(0.0, kMaxFilePressure);
   }
 
+  if (root.has("sigma_mm"))
+    file.sigma = from_milli(root.at("sigma_mm", "a number").number(0.0, kMaxCoordinateMm));
+
   // the raster has skin where it has a height
   const JsonNode raster = root.at("raster", "the raster with the heights of the skin");
   read_raster(raster, file.raster);

@@ -65,6 +65,7 @@ struct PlanFile {
   TargetField raster;  ///< plane and heights (pressure 0 if the file contains none)
   /// Full scale used for playing [unit of the target]; 0 if the file has none.
   double full_scale_pressure = 0.0;
+  double sigma = 0.0;  ///< σ of a focus that the plan was made for [m]; 0 if the file has none
 };
 /// Reads a plan. @throws InputError with a sentence.
 PlanFile plan_from_json(std::string_view text, const std::string& name);
