@@ -12,11 +12,15 @@ namespace {
 constexpr std::array<double, 5> kHeights = {0.10, 0.15, 0.20, 0.25, 0.30};  // [m]
 constexpr double kReference = 20e-6;                                        // of 0 dB, rms [Pa]
 
+/// A value and its bounds.
+struct Interval {
+  double value = 0.0, low = 0.0, high = 0.0;
+};
 /// The pressures at one focal point above the array's centre, at full drive.
 struct FocusRow {
-  double height = 0.0;                               ///< [m]
-  double low = 0.0, high = 0.0;                      ///< acoustic, rms [Pa]
-  double radiation_low = 0.0, radiation_high = 0.0;  ///< [Pa]
+  double height = 0.0;  ///< [m]
+  Interval acoustic;    ///< rms [Pa]
+  Interval radiation;   ///< on the skin [Pa]
 };
 
 double decibels(double pressure) {
@@ -27,9 +31,13 @@ double decibels(double pressure) {
 FocusRow focus_row(const TransducerArray& array, double height) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : array.position) middle += p / static_cast<double>(array.position.size());
-  const double high = full_pressure(array, middle + height * Vec3::UnitZ());
-  const double low = high * smallest_amplitude(array) / largest_amplitude(array);
-  return {height, low, high, radiation_pressure(low, Medium{}), radiation_pressure(high, Medium{})};
+  const Vec3 focus = middle + height * Vec3::UnitZ();
+  const Interval acoustic = {absorbed_pressure(array, focus, likely_amplitude(array)),
+                             absorbed_pressure(array, focus, smallest_amplitude(array)),
+                             full_pressure(array, focus)};
+  const auto radiation = [](double p) { return radiation_pressure(p, Medium{}); };
+  return {height, acoustic,
+          {radiation(acoustic.value), radiation(acoustic.low), radiation(acoustic.high)}};
 }
 
 void print_caps(std::FILE* out, const PipelineSettings& settings) {
@@ -42,32 +50,49 @@ void print_caps(std::FILE* out, const PipelineSettings& settings) {
 
 void print_foci(std::FILE* out, const TransducerArray& array, const std::vector<FocusRow>& rows) {
   fmt::print(out,
-             "\nOne focal point at intensity 1 over the middle of {}, for {:g} to {:g} Pa·m\n"
-             "  height   acoustic pressure, rms            radiation pressure on skin\n",
-             array.name, smallest_amplitude(array), largest_amplitude(array));
+             "\nOne focal point at intensity 1 over the middle of {}, for {:.3g} Pa·m ({:.3g} to "
+             "{:.3g})\n"
+             "  height   sound pressure, rms                      radiation pressure on the skin\n",
+             array.name, likely_amplitude(array), smallest_amplitude(array),
+             largest_amplitude(array));
   for (const FocusRow& row : rows) {
-    fmt::print(out,
-               "  {:>3.0f} mm   {:>5.0f} to {:>5.0f} Pa ({:.0f} to {:.0f} dB)   {:>4.0f} to "
-               "{:>4.0f} Pa\n",
-               1e3 * row.height, row.low, row.high, decibels(row.low), decibels(row.high),
-               row.radiation_low, row.radiation_high);
+    fmt::print(
+        out,
+        "  {:>3.0f} mm   {:>4.1f} kPa ({:.1f} to {:.1f}), {:.0f} dB ({:.0f} to {:.0f})   {:>4.0f} "
+        "Pa ({:.0f} to {:.0f})\n",
+        1e3 * row.height, 1e-3 * row.acoustic.value, 1e-3 * row.acoustic.low,
+        1e-3 * row.acoustic.high, decibels(row.acoustic.value), decibels(row.acoustic.low),
+        decibels(row.acoustic.high), row.radiation.value, row.radiation.low, row.radiation.high);
   }
 }
 
 void print_heads(std::FILE* out, const std::vector<HeadLevel>& heads) {
   fmt::print(out,
              "\nSound level at the head at full drive, on the array's axis [dB re 20 µPa]\n"
-             "  distance   least   taken   bound\n");
+             "  distance   about (from to)   for the cap\n");
   for (const HeadLevel& head : heads) {
-    fmt::print(out, "  {:>4.1f} m     {:>5.1f}   {:>5.1f}   {:>5.1f}\n", head.distance, head.low,
-               head.estimate, head.bound);
+    fmt::print(out, "  {:>4.1f} m     {:>4.0f} ({:.0f} to {:.0f})   {:>8.0f}\n", head.distance,
+               head.likely, head.low, head.bound, head.estimate);
   }
-  fmt::print(out, "\nPublished limits around 40 kHz [dB re 20 µPa]\n");
-  for (const ExposureLimit& limit : exposure_limits())
-    fmt::print(out, "  {:>5.0f}   {} ({})\n", limit.level, limit.name, limit.source);
-  fmt::print(out,
-             "\nEvery array for touch exceeds the lower limits where a head can be. Levels and "
-             "their uncertainty: docs/devices/safety.md\n");
+  fmt::print(out, "\nPublished limits in the third of an octave around 40 kHz [dB re 20 µPa]\n");
+  for (const ExposureLimit& limit : exposure_limits()) {
+    fmt::print(out, "  {:>5.0f}   {}: {} ({})\n", limit.level, limit.name, limit.scope,
+               limit.source);
+  }
+}
+
+void print_advice(std::FILE* out, const HeadLevel& head) {
+  fmt::print(out, "\nRecommended settings, for a head {:g} m from the array\n", head.distance);
+  for (const RecommendedLevel& of : recommended_levels(head)) {
+    fmt::print(out,
+               "  {:<6} [safety] head_level = {:.0f}: about {:.0f} dB{}; felt strength {:.0f} dB "
+               "below full output\n         {}\n",
+               of.use, of.cap, of.level, of.protection > 0.0
+                   ? fmt::format(", {:.0f} dB behind hearing protection", of.level - of.protection)
+                   : std::string(),
+               of.cost, of.advice);
+  }
+  fmt::print(out, "\nLevels and their uncertainty: docs/devices/safety.md\n");
 }
 
 nlohmann::ordered_json levels_json(const PipelineSettings& settings,
@@ -77,25 +102,31 @@ nlohmann::ordered_json levels_json(const PipelineSettings& settings,
   nlohmann::ordered_json json = {
       {"format", "prostm-levels/1"},
       {"array", array.name},
+      {"amplitude_pa_m", likely_amplitude(array)},
       {"amplitude_low_pa_m", smallest_amplitude(array)},
       {"amplitude_high_pa_m", largest_amplitude(array)},
       {"caps", settings_to_json({group_of("safety", settings.safety)})["safety"]}};
   for (const FocusRow& row : foci) {
     json["focus"].push_back({{"height_mm", 1e3 * row.height},
-                             {"acoustic_low_pa", row.low},
-                             {"acoustic_high_pa", row.high},
-                             {"radiation_low_pa", row.radiation_low},
-                             {"radiation_high_pa", row.radiation_high}});
+                             {"acoustic_pa", row.acoustic.value},
+                             {"acoustic_low_pa", row.acoustic.low},
+                             {"acoustic_high_pa", row.acoustic.high},
+                             {"radiation_pa", row.radiation.value},
+                             {"radiation_low_pa", row.radiation.low},
+                             {"radiation_high_pa", row.radiation.high}});
   }
   for (const HeadLevel& head : heads) {
     json["head"].push_back({{"distance_m", head.distance},
+                            {"likely_db", head.likely},
                             {"low_db", head.low},
                             {"estimate_db", head.estimate},
                             {"bound_db", head.bound}});
   }
   for (const ExposureLimit& limit : exposure_limits()) {
-    json["limits"].push_back(
-        {{"name", limit.name}, {"level_db", limit.level}, {"source", limit.source}});
+    json["limits"].push_back({{"name", limit.name},
+                              {"level_db", limit.level},
+                              {"scope", limit.scope},
+                              {"source", limit.source}});
   }
   return json;
 }
@@ -113,6 +144,7 @@ int levels_command(const LevelsOptionsGiven& given) {
   print_caps(out, settings);
   print_foci(out, settings.transducers, foci);
   print_heads(out, heads);
+  print_advice(out, head_level(settings.transducers, settings.safety.head_distance));
   write_json(given.common.json, levels_json(settings, foci, heads));
   return 0;
 }

@@ -15,19 +15,19 @@ def test_levels_are_intervals_next_to_caps_and_limits(prostm, tmp_path, array):
     result = levels(prostm, tmp_path, "--array", array)
     assert result["format"] == "prostm-levels/1" and result["array"] == array
     for row in result["focus"]:
-        assert 0 < row["acoustic_low_pa"] < row["acoustic_high_pa"]
-        assert 0 < row["radiation_low_pa"] < row["radiation_high_pa"]
+        assert 0 < row["acoustic_low_pa"] <= row["acoustic_pa"] < row["acoustic_high_pa"]
+        assert 0 < row["radiation_low_pa"] <= row["radiation_pa"] < row["radiation_high_pa"]
     assert [row["distance_m"] for row in result["head"]] == [0.3, 0.5, 1.0]
     for row in result["head"]:
-        assert row["low_db"] < row["estimate_db"] < row["bound_db"]
+        assert row["low_db"] < row["likely_db"] < row["estimate_db"] < row["bound_db"]
     assert result["caps"]["head_level"] == 145
-    assert [limit["level_db"] for limit in result["limits"]] == [100, 110, 110, 115, 145]
-    assert all(limit["source"] for limit in result["limits"])
+    assert [limit["level_db"] for limit in result["limits"]] == [100, 110, 110, 115]
+    assert all(limit["source"] and limit["scope"] for limit in result["limits"])
 
 
 def test_the_table_names_its_columns(prostm):
     out = prostm("levels").stdout
-    for words in ("Caps ([safety]; lower ones can be set)", "mean_radiation_pressure", "200 mm", "0.5 m", "ACGIH",
+    for words in ("Caps ([safety]; lower ones can be set)", "study  [safety] head_level = ", "demo   [safety] head_level = ", "mean_radiation_pressure", "200 mm", "0.5 m", "ACGIH",
                   "docs/devices/safety.md"):
         assert words in out
 

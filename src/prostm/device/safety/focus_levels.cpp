@@ -40,6 +40,19 @@ class DirectivityTable {
   std::array<float, kSize> value_{};
 };
 
+/// Σ D(θ)/r e^{−αr} over the transducers. @param absorption α [Np/m].
+double spread_at(const TransducerArray& array, const Vec3& p, double absorption) {
+  const double ka = wave_number(array, Medium{}) * array.radius;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < array.position.size(); ++i) {
+    const Vec3 d = p - array.position[i];
+    const double r = std::max(d.norm(), kNearest);
+    sum += directivity(array.directivity, ka, d.dot(array.normal[i]) / r) / r *
+           std::exp(-absorption * r);
+  }
+  return sum;
+}
+
 Eigen::AlignedBox3d box_around(const TransducerArray& array) {
   Eigen::AlignedBox3d box;
   for (const Vec3& p : array.position) box.extend(p);
@@ -54,18 +67,20 @@ double largest_amplitude(const TransducerArray& array) {
 }
 
 double smallest_amplitude(const TransducerArray& array) {
-  return std::min(kSmallestAmplitude, array.amplitude_low);
+  const double smallest = std::min(kSmallestAmplitude, array.amplitude_low);
+  return array.measured_amplitude > 0.0 ? std::min(smallest, array.measured_amplitude) : smallest;
+}
+
+double likely_amplitude(const TransducerArray& array) {
+  return array.measured_amplitude > 0.0 ? array.measured_amplitude : array.amplitude;
 }
 
 double full_pressure(const TransducerArray& array, const Vec3& p) {
-  const double ka = wave_number(array, Medium{}) * array.radius;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < array.position.size(); ++i) {
-    const Vec3 d = p - array.position[i];
-    const double r = std::max(d.norm(), kNearest);
-    sum += directivity(array.directivity, ka, d.dot(array.normal[i]) / r) / r;
-  }
-  return largest_amplitude(array) * sum;
+  return largest_amplitude(array) * spread_at(array, p, 0.0);
+}
+
+double absorbed_pressure(const TransducerArray& array, const Vec3& p, double amplitude) {
+  return amplitude * spread_at(array, p, wave(array, Medium{}).absorption);
 }
 
 FocusLevels::FocusLevels(const TransducerArray& array) {

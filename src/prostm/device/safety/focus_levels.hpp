@@ -11,8 +11,14 @@ namespace prostm {
 
 /// Largest amplitude of an array's transducers according to the sources [Pa·m].
 double largest_amplitude(const TransducerArray& array);
-/// Smallest amplitude according to the sources [Pa·m].
+/// Smallest amplitude according to the sources, the measurement of this array included [Pa·m].
 double smallest_amplitude(const TransducerArray& array);
+/// The amplitude that was measured with the array, else its nominal amplitude [Pa·m].
+double likely_amplitude(const TransducerArray& array);
+
+/// Acoustic pressure (rms) at p of one focal point there at full drive, with air's absorption [Pa].
+/// @param amplitude of the transducers [Pa·m].
+double absorbed_pressure(const TransducerArray& array, const Vec3& p, double amplitude);
 
 /// Acoustic pressure (rms) at p if every transducer is driven fully and all contributions arrive in
 /// phase, Σ A·D(θ)/r [Pa], with A the largest amplitude and no absorption: an upper bound for any

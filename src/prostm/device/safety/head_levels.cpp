@@ -5,6 +5,7 @@
 
 #include "prostm/core/units.hpp"
 #include "prostm/device/safety/focus_levels.hpp"
+#include "prostm/device/safety/safety_settings.hpp"
 
 namespace prostm {
 namespace {
@@ -33,13 +34,12 @@ double solid_angle(const TransducerArray& array) {
 }
 
 constexpr ExposureLimit kLimits[] = {
-    {"IRPA/INIRC 1984, public", 100.0, "from memory, not checked"},
-    {"Health Canada Safety Code 24 (1991)", 110.0, "from memory, not checked"},
-    {"consensus of occupational limits, under 4 h a day", 110.0,
-     "Howard, Hansen & Zander 2004, as cited elsewhere"},
-    {"ACGIH ceiling", 115.0, "from memory, not checked"},
-    {"ACGIH ceiling with its allowance of 30 dB, where nothing carries sound into the body", 145.0,
-     "from memory, not checked"},
+    {100.0, "IRPA/INIRC 1984", "public, at any time", "Health Phys. 46, 969"},
+    {110.0, "Health Canada 1991", "public and at work", "Safety Code 24, table 5"},
+    {110.0, "consensus of limits, 2004", "at work, under 4 h a day",
+     "Howard, Hansen & Zander, J. Occup. Health Safety 21, 253"},
+    {115.0, "ACGIH", "at work, at any time; 30 dB more if nothing couples sound into the body",
+     "as quoted by Howard, Hansen & Zander 2004"},
 };
 
 }  // namespace
@@ -54,19 +54,43 @@ HeadLevel head_level(const TransducerArray& array, double distance) {
   const Vec3 head = middle + distance * axis;
 
   const double ka = wave_number(array, Medium{}) * array.radius;
-  double sum = 0.0, squares = 0.0;  // of D/r
+  const double absorption = wave(array, Medium{}).absorption;
+  double sum = 0.0, squares = 0.0, absorbed = 0.0;  // of D/r; squares with absorption
   for (std::size_t i = 0; i < array.position.size(); ++i) {
     const Vec3 d = head - array.position[i];
     const double r = std::max(d.norm(), 10e-3);
     const double share = directivity(array.directivity, ka, d.dot(array.normal[i]) / r) / r;
     sum += share;
     squares += share * share;
+    absorbed += share * share * std::exp(-2.0 * absorption * r);
   }
   const double from_hand = std::max(kHandToHead, std::abs(distance - kHandHeight));
   const double reflected = count * solid_angle(array) / (2.0 * kPi * from_hand * from_hand);
-  const double least = smallest_amplitude(array), most = largest_amplitude(array);
-  return {distance, decibels(least * least * squares),
-          decibels(most * most * (squares + reflected)), decibels(4.0 * most * most * sum * sum)};
+  const double by_way = std::exp(-2.0 * absorption * (kHandHeight + from_hand));
+  const double least = smallest_amplitude(array), likely = likely_amplitude(array),
+               most = largest_amplitude(array);
+  return {.distance = distance,
+          .low = decibels(least * least * absorbed),
+          .likely = decibels(likely * likely * (absorbed + by_way * reflected)),
+          .estimate = decibels(most * most * (squares + reflected)),
+          .bound = decibels(4.0 * most * most * sum * sum)};
+}
+
+std::array<RecommendedLevel, 2> recommended_levels(const HeadLevel& head) {
+  constexpr double kAtEar = 110.0, kProtection = 20.0;  // [dB]
+  const auto under = [&](const char* use, double protection, const char* advice) {
+    const double lowered = std::max(
+        {0.0, head.likely - protection - kAtEar, head.estimate - SafetySettings{}.head_level});
+    const double cap = std::min(std::floor(head.estimate - lowered), SafetySettings{}.head_level);
+    const double taken = std::max(0.0, head.estimate - cap);
+    return RecommendedLevel{use, cap, head.likely - taken, protection, 2.0 * taken, advice};
+  };
+  return {under("study", kProtection,
+                "everybody in the room wears hearing protection of at least 20 dB at 40 kHz; "
+                "measure the level at the head first"),
+          under("demo", 0.0,
+                "nobody wears hearing protection; if too little is felt, hand out protection and "
+                "use the setting for a study")};
 }
 
 std::span<const ExposureLimit> exposure_limits() {

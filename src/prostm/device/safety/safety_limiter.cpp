@@ -50,7 +50,9 @@ SafetyLevels::SafetyLevels(const TransducerArray& array, const Medium& medium, d
     : focus(array),
       head(head_level(array, head_distance)),
       radiation_per_square(prostm::radiation_pressure(1.0, medium)),
-      share_low(smallest_amplitude(array) / largest_amplitude(array)),
+      share_low(smallest_amplitude(array) / largest_amplitude(array) *
+                std::exp(-wave(array, medium).absorption * focus.box().diagonal().norm())),
+      likely_by_low(likely_amplitude(array) / smallest_amplitude(array)),
       full_scale(static_cast<float>(full_pressure(array, Vec3(0.0, 0.0, kFullScaleHeight)))) {}
 
 float SafetyLimiter::Mean::allowed(float cap) const {

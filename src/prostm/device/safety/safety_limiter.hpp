@@ -25,7 +25,8 @@ struct SafetyLevels {
   FocusLevels focus;
   HeadLevel head;               ///< at full drive
   double radiation_per_square;  ///< radiation pressure over acoustic pressure² [1/Pa]
-  double share_low;             ///< smallest amplitude over the largest
+  double share_low;      ///< smallest amplitude over the largest, after the longest way in air
+  double likely_by_low;  ///< likely amplitude over the smallest
   float full_scale;  ///< acoustic pressure of intensity 1, for devices that define it so [Pa]
 };
 
@@ -59,16 +60,18 @@ inline constexpr std::size_t kSafetyLimits = 12;
 
 /// Statistics of a limiter. Counts are samples of a focal point. Levels are the largest that were
 /// reached, as intervals: from the smallest to the largest amplitude of the sources, and from focal
-/// points that do not add up to those that do.
+/// points that do not add up to those that do. Likely values have likely_amplitude(), and focal
+/// points that do not add up.
 struct SafetyStats {
   std::int64_t not_finite = 0, out_of_range = 0, change = 0, power = 0, place = 0, intensity = 0,
                acoustic_pressure = 0, radiation_pressure = 0, mean_radiation_pressure = 0,
                head_level = 0, jump = 0, ramp = 0;
-  double acoustic_low = 0.0, acoustic_high = 0.0;    ///< rms, at a focal point [Pa]
-  double radiation_low = 0.0, radiation_high = 0.0;  ///< [Pa]
-  double mean_low = 0.0, mean_high = 0.0;            ///< mean radiation pressure [Pa]
+  /// Acoustic pressure (rms) at a focal point [Pa].
+  double acoustic_low = 0.0, acoustic_likely = 0.0, acoustic_high = 0.0;
+  double radiation_low = 0.0, radiation_likely = 0.0, radiation_high = 0.0;  ///< [Pa]
+  double mean_low = 0.0, mean_high = 0.0;  ///< mean radiation pressure [Pa]
   /// Mean sound level at the head [dB]; 0: silence. The cap applies to the estimate.
-  double head_low = 0.0, head_estimate = 0.0, head_bound = 0.0;
+  double head_low = 0.0, head_likely = 0.0, head_estimate = 0.0, head_bound = 0.0;
 };
 template <>
 std::span<const Quantity<SafetyStats>> quantities<SafetyStats>();

@@ -52,14 +52,20 @@ constexpr std::array kStats{
     count("ramp", &S::ramp, "Samples in a ramp after the start, silence or a mute."),
     level("acoustic_low_pa", "Pa", &S::acoustic_low,
           "Largest acoustic pressure, rms: lower bound."),
+    level("acoustic_likely_pa", "Pa", &S::acoustic_likely,
+          "Largest acoustic pressure, rms: likely value."),
     level("acoustic_high_pa", "Pa", &S::acoustic_high,
           "Largest acoustic pressure, rms: upper bound."),
     level("radiation_low_pa", "Pa", &S::radiation_low, "Largest radiation pressure: lower bound."),
+    level("radiation_likely_pa", "Pa", &S::radiation_likely,
+          "Largest radiation pressure: likely value."),
     level("radiation_high_pa", "Pa", &S::radiation_high,
           "Largest radiation pressure: upper bound."),
     level("mean_low_pa", "Pa", &S::mean_low, "Largest mean radiation pressure: lower bound."),
     level("mean_high_pa", "Pa", &S::mean_high, "Largest mean radiation pressure: upper bound."),
     level("head_low_db", "dB", &S::head_low, "Largest mean sound level at the head: lower bound."),
+    level("head_likely_db", "dB", &S::head_likely,
+          "Largest mean sound level at the head: likely value."),
     level("head_estimate_db", "dB", &S::head_estimate,
           "Largest mean sound level at the head: the estimate that is capped."),
     level("head_bound_db", "dB", &S::head_bound,
@@ -124,13 +130,16 @@ SafetyStats SafetyLimiter::stats() const {
   };
   const double per_square = limits_.levels->radiation_per_square;
   s.acoustic_low = static_cast<double>(reached(0));
+  s.acoustic_likely = limits_.levels->likely_by_low * s.acoustic_low;
   s.acoustic_high = static_cast<double>(reached(1));
   s.radiation_low = per_square * s.acoustic_low * s.acoustic_low;
+  s.radiation_likely = per_square * s.acoustic_likely * s.acoustic_likely;
   s.radiation_high = per_square * s.acoustic_high * s.acoustic_high;
   s.mean_low = static_cast<double>(reached(2));
   s.mean_high = static_cast<double>(reached(3));
   const HeadLevel& head = limits_.levels->head;
   s.head_low = at_share(head.low, reached(4));
+  s.head_likely = at_share(head.likely, reached(4));
   s.head_estimate = at_share(head.estimate, reached(5));
   s.head_bound = at_share(head.bound, reached(5));
   return s;
