@@ -123,8 +123,13 @@ void measure_run(const Options& given, int readers, bool one_stops, Measured& ou
       std::make_unique<HandSwitch>(hands_of(settings), link.page_hand, default_tracker_pose());
   link.hands = hands.get();
   Pipeline pipeline(settings, std::move(hands));
-  PipelineView view(link, ViewHello{"bench", "simulated usx", "usx", settings.transducers.position,
-                                    Vec3::Zero(), settings.fluid.width});
+  PipelineView view(link, ViewHello{"bench",
+                                    "simulated usx",
+                                    "usx",
+                                    settings.transducers.position,
+                                    Vec3::Zero(),
+                                    settings.fluid.width,
+                                    {}});
   ViewSettings view_settings;
   view_settings.port = 0;
   view_settings.stall_time = 3600.0;  // keeps the page that stopped

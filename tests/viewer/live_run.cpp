@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pipeline/simulated.hpp"
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/io/hand/pose_file.hpp"
 
 namespace prostm::test {
@@ -66,9 +67,10 @@ LiveRun::LiveRun(const PipelineSettings& settings, RunOptions options, const Mak
   hands->set_tracker_pose(default_tracker_pose());
   link_.hands = hands.get();
   pipeline_ = std::make_unique<Pipeline>(settings, std::move(hands), link_.mute);
+  const SensationInterval interval = sensation_interval(settings.transducers);
   view_ = std::make_unique<PipelineView>(
-      link_,
-      ViewHello{"0", "simulated usx", "usx", settings.transducers.position, Vec3::Zero(), 0.36});
+      link_, ViewHello{"0", "simulated usx", "usx", settings.transducers.position, Vec3::Zero(),
+                       0.36, interval.below, interval.above, std::string(name_of(interval.sound))});
   ViewSettings view;
   view.port = 0;
   server_ = std::make_unique<ViewServer>(view, *view_, std::span<const PageFile>());

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "viewer/live_run.hpp"
 
 namespace prostm {
@@ -56,6 +57,10 @@ TEST(Live, ReportsItsState) {
   const Json hello = page.next_text("hello");
   EXPECT_EQ(hello.at("array").at("transducers_mm").size(), 256U);
   EXPECT_EQ(hello.at("box_mm").at("edge"), 360.0);
+  const SensationInterval interval = sensation_interval(small_settings().transducers);
+  EXPECT_EQ(hello.at("sensation").at("below_db"), interval.below);
+  EXPECT_EQ(hello.at("sensation").at("above_db"), interval.above);
+  EXPECT_EQ(hello.at("sensation").at("sound"), name_of(interval.sound));
   const Json state = page.next_text("state");
   EXPECT_EQ(control(state, "method").at("value"), "pro-stm");
   EXPECT_FALSE(control(state, "gain").contains("unit"));
@@ -71,6 +76,19 @@ TEST(Live, ReportsItsState) {
   const RunSummary summary = run.stop();
   EXPECT_TRUE(summary.stopped);
   EXPECT_GT(summary.plans, 0);
+}
+
+TEST(Live, ReportsThatTheLinkToTheArrayIsLost) {
+  LiveLink link;
+  PipelineView view(link, ViewHello{});
+  for (const bool lost : {true, false}) {
+    link.snapshots.run_draft().device_lost = lost;
+    link.snapshots.publish_run();
+    ViewFrame frame;
+    ViewNews news;
+    view.refresh(frame, news);
+    EXPECT_EQ((frame.run.flags & kViewDeviceLost) != 0, lost);
+  }
 }
 
 TEST(Live, ChangedControlsShowInThePlan) {

@@ -34,7 +34,8 @@ class LiveStudy {
     link_.hands = hands.get();
     pipeline_ = std::make_unique<Pipeline>(link_.settings.pipeline, std::move(hands), link_.mute);
     view_ = std::make_unique<CountingView>(
-        link_, ViewHello{"0", "simulated usx", "usx", {}, Vec3::Zero(), 0.36}, session_);
+        link_, ViewHello{"0", "simulated usx", "usx", {}, Vec3::Zero(), 0.36, 0.0, 0.0, "nominal"},
+        session_);
     ViewSettings settings;
     settings.port = 0;
     settings.guests = true;

@@ -11,6 +11,7 @@ export interface Hello {
   numbers: string[];
   array: { name: string; transducers_mm: [number, number, number][] };
   box_mm: { origin: [number, number, number]; edge: number };
+  sensation: { below_db: number; above_db: number; sound: string }; // interval of sensation levels
 }
 
 interface ControlBase {
@@ -155,6 +156,10 @@ function isRates(x: unknown): boolean {
   return x.advice === null || isAdvice(x.advice);
 }
 
+function isSensation(x: unknown): boolean {
+  return isObject(x) && Number.isFinite(x.below_db) && Number.isFinite(x.above_db) && isText(x.sound);
+}
+
 function isCalibration(x: unknown): boolean {
   if (!isObject(x) || !Array.isArray(x.marks)) return false;
   return x.marks.every((m) => isObject(m) && isText(m.name) && isPoint(m.p_mm));
@@ -175,7 +180,7 @@ export function parseMessage(text: string): ServerMessage | null {
     known = isText(message.device) && Number.isFinite(message.page) &&
       Array.isArray(message.numbers) && message.numbers.every(isText) && isObject(array) && isText(array.name) &&
       Array.isArray(array.transducers_mm) && array.transducers_mm.every(isPoint) &&
-      isObject(box) && isPoint(box.origin) && Number.isFinite(box.edge);
+      isObject(box) && isPoint(box.origin) && Number.isFinite(box.edge) && isSensation(message.sensation);
   } else if (message.type === "state") {
     message.tracker ??= null;
     message.calibration ??= null;

@@ -30,6 +30,7 @@ export interface Run {
   muted: boolean; // by a page or in the terminal
   calibrating: boolean; // in a calibration, which also mutes it
   hot: boolean; // the device is too hot, which also mutes it
+  deviceLost: boolean; // the link to the device is lost
 }
 
 export interface Hand {
@@ -175,7 +176,7 @@ function readRun(reader: Reader): Run {
   const flag = (bit: number) => (flags & bit) !== 0;
   return {
     ...run, paused: flag(1), pageHand: flag(2), handInSight: flag(4), fading: flag(8), muted: flag(16),
-    calibrating: flag(32), hot: flag(64),
+    calibrating: flag(32), hot: flag(64), deviceLost: flag(128),
   };
 }
 

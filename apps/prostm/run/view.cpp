@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "common.hpp"
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/commit.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/hand/pose_file.hpp"
@@ -71,9 +72,16 @@ std::unique_ptr<HandSource> View::behind_the_page(std::unique_ptr<HandSource> ba
 ViewHello View::hello(Pipeline& pipeline) const {
   const GridShape& grid = pipeline.world_stage().world().grid();
   const PipelineSettings& s = settings();
-  return {version_text(),     pipeline.device().info().name,
-          s.transducers.name, s.transducers.position,
-          grid.p_DF,          grid.cell * grid.nx};
+  const SensationInterval interval = sensation_interval(s.transducers);
+  return {version_text(),
+          pipeline.device().info().name,
+          s.transducers.name,
+          s.transducers.position,
+          grid.p_DF,
+          grid.cell * grid.nx,
+          interval.below,
+          interval.above,
+          std::string(name_of(interval.sound))};
 }
 
 void View::start(bool guests) {

@@ -66,6 +66,7 @@ struct RunSnapshot {
   double time = 0.0;                         ///< run time [s]
   double world_rate = 0.0, plan_rate = 0.0;  ///< over the last second [Hz]
   bool paused = false, fading = false;
+  bool device_lost = false;  ///< the device has vanished; it may come back
   PageHandReport page_hand;
   Advice advice;       ///< None while the rates are held
   DeviceStats device;  ///< since the start of the run, like emit

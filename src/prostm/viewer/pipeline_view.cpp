@@ -226,7 +226,9 @@ std::string PipelineView::hello(std::uint32_t page, Room) {
       {"device", h.device},
       {"numbers", view_number_names()},
       {"array", {{"name", h.array}, {"transducers_mm", transducers}}},
-      {"box_mm", {{"origin", viewer::millimetres(h.box_corner)}, {"edge", 1e3 * h.box_edge}}}}
+      {"box_mm", {{"origin", viewer::millimetres(h.box_corner)}, {"edge", 1e3 * h.box_edge}}},
+      {"sensation",
+       {{"below_db", h.level_below}, {"above_db", h.level_above}, {"sound", h.sound_source}}}}
       .dump();
 }
 

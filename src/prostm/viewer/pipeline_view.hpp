@@ -17,6 +17,9 @@ struct ViewHello {
   std::vector<Vec3> transducers;   ///< in D [m]
   Vec3 box_corner = Vec3::Zero();  ///< corner of the smoke's box in D [m]
   double box_edge = 0.0;           ///< [m]
+  double level_below = 0.0;        ///< interval of sensation levels with this array: below [dB]
+  double level_above = 0.0;        ///< the same, above [dB]
+  std::string sound_source;        ///< name of its SoundSource
 };
 
 /// Does the expensive work for viewers (rendering the field, metrics, messages) on the server's

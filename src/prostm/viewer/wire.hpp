@@ -74,6 +74,7 @@ enum ViewFlag : std::uint32_t {
   kViewMuted = 16,        ///< the output was muted, on a page or in the terminal
   kViewCalibrating = 32,  ///< a calibration mutes the output
   kViewHot = 64,          ///< the device is too hot, which mutes the output
+  kViewDeviceLost = 128,  ///< the link to the device is lost
 };
 
 struct ViewRun {

@@ -50,7 +50,7 @@ export function encode(contents: Contents): ArrayBuffer {
 
   const run = contents.run ?? {};
   const flags = (run.paused ? 1 : 0) | (run.pageHand ? 2 : 0) | (run.handInSight ? 4 : 0) | (run.fading ? 8 : 0) |
-    (run.muted ? 16 : 0) | (run.calibrating ? 32 : 0) | (run.hot ? 64 : 0);
+    (run.muted ? 16 : 0) | (run.calibrating ? 32 : 0) | (run.hot ? 64 : 0) | (run.deviceLost ? 128 : 0);
   section(1, 1, (w) => w.f64(run.time ?? 0, run.recordingTime ?? NaN).u32(run.worldSteps ?? 0, run.planUpdates ?? 0, flags, 0));
   if (contents.unknown !== undefined) section(99, 3, (w) => w.bytes(new Uint8Array(contents.unknown ?? 0)));
   if (contents.numbers) section(2, contents.numbers.length, (w) => w.f32(...(contents.numbers ?? [])));

@@ -10,7 +10,7 @@ function inWords(frame: Frame): unknown {
   const known = (x: number) => (Number.isNaN(x) ? null : x);
   const { run } = frame;
   const flags = (run.paused ? 1 : 0) | (run.pageHand ? 2 : 0) | (run.handInSight ? 4 : 0) | (run.fading ? 8 : 0) |
-    (run.muted ? 16 : 0) | (run.calibrating ? 32 : 0) | (run.hot ? 64 : 0);
+    (run.muted ? 16 : 0) | (run.calibrating ? 32 : 0) | (run.hot ? 64 : 0) | (run.deviceLost ? 128 : 0);
   const rows = (values: Float32Array, width: number) => Array.from({ length: values.length / width }, (_, i) => [...values.subarray(width * i, width * (i + 1))]);
   return {
     version: 2,

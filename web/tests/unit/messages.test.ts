@@ -19,8 +19,9 @@ describe("parseMessage", () => {
     expect(withAdvice("Use --grid 48.")).toBeNull();
   });
   it("accepts a hello and an error", () => {
-    const hello = { type: "hello", version: 1, page: 3, prostm: "0.1.0", device: "simulated usx", numbers: ["rmse"], array: { name: "usx", transducers_mm: [[0, 0, 0]] }, box_mm: { origin: [0, 0, 0], edge: 250 } };
+    const hello = { type: "hello", version: 1, page: 3, prostm: "0.1.0", device: "simulated usx", numbers: ["rmse"], array: { name: "usx", transducers_mm: [[0, 0, 0]] }, box_mm: { origin: [0, 0, 0], edge: 250 }, sensation: { below_db: 9, above_db: 8, sound: "measured" } };
     expect(parseMessage(JSON.stringify(hello))).toEqual(hello);
+    expect(parseMessage(JSON.stringify({ ...hello, sensation: undefined }))).toBeNull();
     expect(parseMessage('{"type":"error","sentence":"no"}')).toEqual({ type: "error", sentence: "no" });
     expect(parseMessage('{"type":"error","id":"gain","sentence":"no"}')).toEqual({ type: "error", id: "gain", sentence: "no" });
   });

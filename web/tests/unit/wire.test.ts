@@ -23,7 +23,7 @@ describe("a whole frame", () => {
   it("is read as it was written", () => {
     const frame = new Decoder().decode(whole());
     expect(frame.sequence).toBe(12);
-    expect(frame.run).toEqual({ time: 3.5, recordingTime: 1.25, worldSteps: 175, planUpdates: 87, paused: true, pageHand: false, handInSight: true, fading: false, muted: true, calibrating: false, hot: false });
+    expect(frame.run).toEqual({ time: 3.5, recordingTime: 1.25, worldSteps: 175, planUpdates: 87, paused: true, pageHand: false, handInSight: true, fading: false, muted: true, calibrating: false, hot: false, deviceLost: false });
     expect(numberOf(frame, "plan_ms")).toBe(4);
     expect(numberOf(frame, "saturated")).toBe(29);
     expect(frame.hands).toEqual([hand, { ...hand, side: "left" }]);

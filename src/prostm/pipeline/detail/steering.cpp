@@ -132,6 +132,7 @@ void Steering::show(double time, std::int64_t steps, std::int64_t plans, bool fa
   run.paused = !state_.playing;
   if (link_.page_hand) run.page_hand = link_.page_hand->report();
   run.fading = fading;
+  run.device_lost = pipeline_.device().status() == DeviceStatus::Vanished;
   run.advice = advice;
   run.device = pipeline_.device_stats();
   run.emit = pipeline_.emit_stats();

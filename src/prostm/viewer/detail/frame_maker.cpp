@@ -234,7 +234,7 @@ std::uint32_t FrameMaker::flags(const ViewFrame& frame) const {
          (frame.hand_count > 0 ? kViewHandInSight : 0U) | (run.fading ? kViewFading : 0U) |
          (mute_.on(MuteReason::Person) ? kViewMuted : 0U) |
          (mute_.on(MuteReason::Calibration) ? kViewCalibrating : 0U) |
-         (mute_.on(MuteReason::Hot) ? kViewHot : 0U);
+         (mute_.on(MuteReason::Hot) ? kViewHot : 0U) | (run.device_lost ? kViewDeviceLost : 0U);
 }
 
 /// Without a hand there is no latency: the last value belongs to a hand that has left.
