@@ -9,8 +9,10 @@ export interface Inspection {
   readonly frames: number; // decoded
   readonly refused: number; // frames that could not be decoded
   readonly connections: number; // connections made
-  readonly pictures: number; // pictures drawn
+  readonly pictures: number; // pictures drawn in three dimensions
+  readonly sideViews: number; // side views drawn
   readonly speed: { framesPerSecond: number; pixelRatio: number };
+  readonly past: { frames: number; bytes: number }; // kept for a look back
   readonly dark: boolean;
 }
 

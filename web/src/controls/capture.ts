@@ -1,19 +1,9 @@
 /// Screenshots (PNG) and films (WebM) of the page.
 
 import { find } from "../dom";
+import { offer, stamp } from "./download";
 import { compose, type PictureSource } from "./picture";
-
-function offer(data: Blob, name: string): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(data);
-  link.download = name;
-  link.click();
-  window.setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-}
-
-function stamp(): string {
-  return new Date().toISOString().slice(0, 19).replace("T", "-").replaceAll(":", "");
-}
+import { tip } from "./tips";
 
 export class Capture {
   private recorder: MediaRecorder | null = null;
@@ -30,7 +20,7 @@ export class Capture {
     const type = typeof MediaRecorder === "undefined" ? undefined : types.find((t) => MediaRecorder.isTypeSupported(t));
     if (type === undefined || !("captureStream" in source.canvas)) {
       this.film.disabled = true;
-      this.film.title = "This browser cannot record films of the picture (it lacks MediaRecorder with WebM).";
+      this.film.after(tip("Record", "This browser cannot record films of the picture (it lacks MediaRecorder with WebM)."));
       return;
     }
     this.film.addEventListener("click", () => {

@@ -3,6 +3,7 @@
 import { make } from "../dom";
 import type { ChoiceControl, Control, NumberControl, Value } from "../messages";
 import { short } from "../text";
+import { tip } from "./tips";
 
 export interface Actions {
   set(id: string, value: Value): void;
@@ -153,8 +154,9 @@ export function makeField(control: Control, act: Actions): Field {
     : make("label", { class: "label", for: id }, control.label);
   const error = make("p", { class: "error", id: `${id}-error`, role: "alert" });
   for (const part of made.parts) part.setAttribute("aria-description", control.help);
-  const attributes = { class: `field ${control.kind}`, "data-control": control.id, title: control.help };
-  const root = make("div", attributes, label, ...made.parts, error);
+  const attributes = { class: `field ${control.kind}`, "data-control": control.id };
+  const name = make("div", { class: "name" }, label, tip(control.label, control.help));
+  const root = make("div", attributes, name, ...made.parts, error);
   const show = (c: Control, force = false) => {
     last = c;
     if (force || c.value === wanted) wanted = undefined;

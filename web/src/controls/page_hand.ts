@@ -35,6 +35,8 @@ export class PageHand {
   constructor(
     private readonly view: View, private readonly send: (message: PageMessage) => void,
     private readonly say: (sentence: string) => void,
+    /// pixels per metre of the side view while it is shown, else null
+    private readonly sideScale: () => number | null,
   ) {
     const { canvas } = view;
     this.toggleBox.addEventListener("change", () => (this.toggleBox.checked ? this.take() : this.release()));
@@ -49,7 +51,10 @@ export class PageHand {
       canvas.addEventListener(end, (e) => e.pointerId === this.dragging && (this.dragging = null));
     }
     canvas.addEventListener("wheel", (e) => {
+      const flat = this.sideScale() !== null;
+      if (flat && !this.active) return; // the page scrolls
       e.preventDefault();
+      if (flat && e.ctrlKey) return;
       if (!this.active || e.ctrlKey) return view.eye.zoom(zoomOf(e, canvas.clientHeight));
       const up = Math.max(-8, Math.min(8, -pixelsOf(e, canvas.clientHeight) / 12)); // [mm]
       this.change((p) => (p.palm_mm[2] += up));
@@ -152,15 +157,23 @@ export class PageHand {
     return true;
   }
 
-  /// Moves the hand sideways and away from the viewer, whatever the view.
+  /// Moves the hand sideways and away from the viewer, whatever the view; in the side view sideways and up.
   private drag(event: PointerEvent): void {
+    const side = this.sideScale(), right_px = event.clientX - this.at.x, up_px = this.at.y - event.clientY;
+    if (side !== null) {
+      this.at = { x: event.clientX, y: event.clientY };
+      return this.change((p) => {
+        p.palm_mm[0] += (1000 * right_px) / side;
+        p.palm_mm[2] += (1000 * up_px) / side;
+      });
+    }
     const camera = this.view.eye.camera;
     const palm = new Vector3(...this.pose.palm_mm).divideScalar(1000);
     const height = 2 * camera.position.distanceTo(palm) * Math.tan((camera.fov * Math.PI) / 360); // of the picture [m]
     const metres = height / (this.view.canvas.clientHeight || 1);
     const right = new Vector3().setFromMatrixColumn(camera.matrixWorld, 0).setZ(0).normalize();
     const away = new Vector3(0, 0, 1).cross(right);
-    const dx = (event.clientX - this.at.x) * metres * 1000, dy = (this.at.y - event.clientY) * metres * 1000;
+    const dx = right_px * metres * 1000, dy = up_px * metres * 1000;
     this.at = { x: event.clientX, y: event.clientY };
     this.change((p) => {
       p.palm_mm[0] += dx * right.x + dy * away.x;

@@ -59,6 +59,7 @@ function drawScene(context: CanvasRenderingContext2D, source: PictureSource, lef
   const view = source.canvas.getBoundingClientRect();
   source.render();
   context.drawImage(source.canvas, left, top, view.width, view.height);
+  if (source.canvas.id !== "view") return; // the side view draws its texts itself
   for (const label of document.querySelectorAll("#labels span:not([hidden], .covered)")) {
     drawTexts(context, label, view, left, top);
   }

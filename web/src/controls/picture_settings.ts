@@ -4,6 +4,7 @@ import { kPictures, type Address, type PictureMode } from "../address";
 import { find, make, reducedMotion } from "../dom";
 import { kViews } from "../scene/camera";
 import { kFieldModes, type FieldMode } from "../scene/field_maps";
+import type { SideView } from "../scene/side_view";
 import type { View } from "../scene/view";
 
 const kSlowest = [1, 2, 5, 10, 20, 50, 100];
@@ -19,7 +20,10 @@ export class PictureSettings {
   private readonly picture = find<HTMLSelectElement>("picture-mode");
 
   /// @param changed called when the picture has to be drawn differently.
-  constructor(private readonly view: View, private readonly address: Address, private readonly changed: () => void) {
+  constructor(
+    private readonly view: View, private readonly side: SideView, private readonly address: Address,
+    private readonly changed: () => void,
+  ) {
     const { skin } = address.state;
     if (kFieldModes.some((m) => m === skin)) this.field = skin as FieldMode;
     this.mode = address.state.picture ?? "auto";
@@ -36,7 +40,10 @@ export class PictureSettings {
     through.addEventListener("change", setThrough);
     setThrough();
     const smoke = find<HTMLInputElement>("show-smoke");
-    smoke.addEventListener("change", () => (view.showSmoke = smoke.checked));
+    smoke.addEventListener("change", () => {
+      view.showSmoke = smoke.checked;
+      side.again();
+    });
     view.setField(this.field);
     view.eye.place = address.state.eye;
   }
@@ -73,7 +80,7 @@ export class PictureSettings {
 
   private setSlowMotion(): void {
     const factor = kSlowest[Number(this.slow.value)] ?? 50;
-    this.view.paths.slowdown = factor;
+    this.view.paths.slowdown = this.side.slowdown = factor;
     find("slow-motion-value").textContent = factor === 1 ? "1/1" : `1/${factor}`;
     this.slow.setAttribute("aria-valuetext", factor === 1 ? "as played" : `1/${factor} of the speed`);
     this.slow.style.setProperty("--share", `${(100 * Number(this.slow.value)) / (kSlowest.length - 1)}%`);

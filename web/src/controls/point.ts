@@ -7,7 +7,8 @@ import type { View } from "../scene/view";
 export class Pointer {
   private at: Place | null = null;
 
-  constructor(private readonly view: View) {
+  /// @param drawn whether the picture is shown.
+  constructor(private readonly view: View, private readonly drawn: () => boolean) {
     onPoint(view.canvas, (at) => {
       this.at = at;
       this.update();
@@ -17,7 +18,7 @@ export class Pointer {
   /// Also called when new data arrive under a resting pointer.
   update(moved = true): void {
     if (this.at === null) return void (moved && say([], 0, 0));
-    const hit = this.view.skinAt(this.at.x, this.at.y);
+    const hit = this.drawn() ? this.view.skinAt(this.at.x, this.at.y) : null;
     if (hit === null) {
       // a hand that appears later was not tapped
       if (this.at.tapped) this.at = null;

@@ -61,6 +61,6 @@ export class Transport {
   private showPlace(at: number): void {
     this.scrub.style.setProperty("--share", `${(100 * at) / (this.length || 1)}%`);
     this.scrub.setAttribute("aria-valuetext", `${fixed(at, 1)} of ${fixed(this.length, 1)} seconds`);
-    setText(this.place, placeOf(at, this.length));
+    setText(find("place-words"), placeOf(at, this.length));
   }
 }

@@ -1,8 +1,8 @@
 /// Numbers over time, and the axis of their strip.
 
-export const kLongest = 120; // [s]
+export const kLongest = 420; // the past that can be looked back at, and the longest strip before it [s]
 
-/// Values over time. Those older than two minutes are dropped.
+/// Values over time. Those older than seven minutes are dropped.
 export class History {
   readonly times: number[] = [];
   readonly values: number[][];

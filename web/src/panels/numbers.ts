@@ -1,5 +1,6 @@
-/// The numbers of the newest frame: six large ones, and all of them in a table. None is computed here.
+/// The numbers of the newest frame, folded: the most important ones, and all of them in a table. None is computed here.
 
+import { tip } from "../controls/tips";
 import { find, make, setText } from "../dom";
 import { fixed } from "../text";
 import { kNumbers, numberOf, type Frame, type NumberName } from "../wire";
@@ -33,8 +34,8 @@ export class Numbers {
     };
     for (const tile of kTiles) {
       const values = tile.parts.flatMap((p) => [put(p.name, p.digits), make("span", { class: "unit" }, p.after ?? "")]);
-      const parts = [make("dt", {}, tile.label), make("dd", {}, ...values)];
-      find("tiles").append(make("div", { class: "tile", title: tile.help }, ...parts));
+      const parts = [make("dt", {}, tile.label, " ", tip(tile.label, tile.help)), make("dd", {}, ...values)];
+      find("tiles").append(make("div", { class: "tile" }, ...parts));
     }
     const body = make("tbody");
     const row = (name: string, cell: HTMLElement) =>

@@ -161,7 +161,7 @@ export class Planes {
   private drawScaleBar(context: CanvasRenderingContext2D, pixels: number, height: number, ratio: number): void {
     const style = getComputedStyle(document.documentElement);
     const left = 7 * ratio, bottom = height - 7 * ratio;
-    context.font = `600 ${11 * ratio}px system-ui, sans-serif`;
+    context.font = `600 ${12 * ratio}px system-ui, sans-serif`;
     // outlined in the background's colour, so that it is legible over a hand
     context.strokeStyle = style.getPropertyValue("--raised").trim();
     context.lineWidth = 3 * ratio;

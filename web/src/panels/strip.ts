@@ -12,6 +12,7 @@ import type { StripSpec } from "./strip_specs";
 export interface StripsView {
   span: number; // [s]
   now: number; // the right end [s, page's clock]
+  past: boolean; // whether the right end is an earlier moment
   at: number | null; // the pointer's time [s before `now`, at most 0]
 }
 
@@ -26,7 +27,7 @@ export class Strip {
   private readonly rates: (PerSecond | null)[];
   private readonly readings: HTMLElement[];
   private readonly host = make("div", { class: "plot" });
-  private view: StripsView = { span: 30, now: 0, at: null };
+  private view: StripsView = { span: 30, now: 0, past: false, at: null };
   private top = 1;
   private cut = beyond([], [], 0, 0); // times of samples outside the axis [s before now]
 
@@ -60,10 +61,10 @@ export class Strip {
     const { spec } = this;
     const axis = {
       stroke: () => style("--faint"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false },
-      font: "11px system-ui, sans-serif",
+      font: "12px system-ui, sans-serif",
     };
     // the left end has no label: it would overlap the 0 of the other axis
-    const label = (t: number) => (t === 0 ? "now" : t <= -this.view.span ? "" : `−${-t} s`);
+    const label = (t: number) => (t === 0 ? (this.view.past ? "then" : "now") : t <= -this.view.span ? "" : `−${-t} s`);
     return {
       width: 300, height: 60, pxAlign: 1, legend: { show: false }, cursor: { show: false },
       padding: [6, 14, this.last ? 0 : 6, 0],
@@ -130,6 +131,9 @@ export class Strip {
     this.history.add(time, this.spec.series.map((s, i) => this.rates[i]?.add(time, s.value(frame)) ?? s.value(frame)));
   }
 
+  /// The values shown.
+  get shown(): History { return this.kept ?? this.history; }
+
   /// Freezes the strip with its present values, or resumes it.
   freeze(frozen: boolean): void { this.kept = frozen ? this.history.copy() : null; }
 
@@ -142,15 +146,15 @@ export class Strip {
 
   draw(view: StripsView): void {
     this.view = view;
-    const history = this.kept ?? this.history;
+    const history = this.shown;
     this.read(history);
     const width = this.host.clientWidth, height = this.host.clientHeight;
     if (width < 40 || height < 20) return;
     if (this.plot.width !== width || this.plot.height !== height) this.plot.setSize({ width, height });
 
-    const first = history.after(view.now - view.span - 1);
-    const times = history.times.slice(first).map((t) => t - view.now);
-    let rows = history.values.map((row) => row.slice(first));
+    const first = history.after(view.now - view.span - 1), last = view.past ? history.after(view.now + 1) : undefined;
+    const times = history.times.slice(first, last).map((t) => t - view.now);
+    let rows = history.values.map((row) => row.slice(first, last));
     if (this.spec.stacked) {
       const sums = times.map(() => 0);
       rows = rows.map((row) => row.map((v, i) => (sums[i] = sums[i]! + (Number.isFinite(v) ? v : 0))));
@@ -167,7 +171,7 @@ export class Strip {
 
   /// Shows the newest values, or those at the pointer.
   private read(history: History): void {
-    const newest = this.view.at === null && this.kept === null;
+    const newest = this.view.at === null && this.kept === null && !this.view.past;
     const at = newest ? history.times.length - 1 : history.nearest(this.view.now + (this.view.at ?? 0));
     this.spec.series.forEach((s, i) => setText(this.readings[i]!, fixed(history.values[i]![at] ?? NaN, s.digits ?? 1)));
   }

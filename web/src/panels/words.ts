@@ -14,8 +14,9 @@ const kAudible = 0.005; // intensity of the strongest focal point, 0 to 1, above
 /// Returns the state of the output in a frame.
 export function outputOf(frame: Frame): Output {
   const { run } = frame;
+  if (run.deviceLost) return { state: "off", why: "the link to the array is lost; trying again" };
   if (run.muted) return { state: "muted", why: "by you or another page" };
-  if (run.hot) return { state: "muted", why: "the array is too hot" };
+  if (run.hot) return { state: "muted", why: "because the array is too hot" };
   if (run.calibrating) return { state: "muted", why: "for the calibration" };
   const intensity = numberOf(frame, "intensity");
   // for a device that does not report its output: it plays the plan

@@ -36,6 +36,8 @@ export class OrbitCamera {
   smooth = true;
   /// when true, the primary button and single touches belong to the page's hand
   primaryTaken = false;
+  /// when true, the view is not shown, and stays
+  idle = false;
   private readonly pointers = new Map<number, { x: number; y: number; button: number }>();
 
   constructor(private readonly element: HTMLElement) {
@@ -94,7 +96,7 @@ export class OrbitCamera {
   }
   private move(event: PointerEvent): void {
     const pointer = this.pointers.get(event.pointerId);
-    if (pointer === undefined) return;
+    if (pointer === undefined || this.idle) return;
     const dx = event.clientX - pointer.x, dy = event.clientY - pointer.y;
     const others = [...this.pointers].filter(([id]) => id !== event.pointerId).map(([, p]) => p);
     const height = this.element.clientHeight || 1;
@@ -118,6 +120,7 @@ export class OrbitCamera {
 
   /// @return whether the key moves the camera.
   key(event: KeyboardEvent): boolean {
+    if (this.idle) return false;
     const step = event.shiftKey ? 0.04 : 0.1;
     const nearer = () => this.zoom(0.9), home = () => this.go("home");
     const act = entryOf(event, {

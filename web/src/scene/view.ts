@@ -77,6 +77,7 @@ export class View {
   private drawn = -Infinity; // when ready() last allowed a picture [ms]
   private begun = 0; // when its drawing began [ms]
   showSmoke = true;
+  private smokeKnown = false; // whether the frame shown has smoke
 
   private unhurried = false;
 
@@ -160,6 +161,7 @@ export class View {
     this.hands.set(frame.hands);
     this.ruler.setHand(frame.hands[0]);
     this.field = frame.field;
+    this.smokeKnown = frame.smoke !== null;
     this.paths.set(frame.plan);
     if (frame.smoke !== null && frame.smokeSequence !== this.smokeSequence) {
       this.smoke.set(frame.smoke);
@@ -224,7 +226,7 @@ export class View {
     renderer.clear();
     renderer.render(this.handScene, camera);
 
-    const smoky = this.showSmoke && this.smoke.visible;
+    const smoky = this.showSmoke && this.smokeKnown && this.smoke.visible;
     if (smoky) {
       const u = this.smoke.material.uniforms;
       (u.toWorld!.value as Matrix4).multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).invert();

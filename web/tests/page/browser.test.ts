@@ -1,5 +1,6 @@
 /// Browsers take a page's graphics context away, hide the page, and come with many kinds of keyboards and wheels.
 
+import { statSync } from "node:fs";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import "../../src/inspection";
@@ -75,7 +76,7 @@ describe("a picture whose graphics context is taken away", () => {
     const before = await colours(page);
     for (const theme of ["dark", "light"]) {
       await lose(page);
-      await sign(page, /graphics context.*planes show/);
+      await sign(page, /^Side view, .*graphics context/);
       expect(await page.locator("#draw-anyway").isVisible()).toBe(false);
       const { pictures, frames } = await page.evaluate(() => ({ pictures: window.prostm.pictures, frames: window.prostm.frames }));
       await page.locator("#theme").selectOption(theme);
@@ -125,12 +126,83 @@ describe("a picture whose graphics context is taken away", () => {
     await until(page, () => window.prostm.frame!.run.muted, 0, "the output muted");
     await page.locator("#mute").click();
     await until(page, () => !window.prostm.frame!.run.muted, 0, "the output unmuted");
-    await page.locator("#screenshot").click();
+    const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#screenshot").click()]);
+    expect(statSync(await download.path()).size).toBeGreaterThan(20_000);
     await page.evaluate(() => Object.assign(window, { allowed: true }));
     await page.locator("#draw-anyway").click();
     await newPictures(page);
     expect(watch.complaints).toEqual([]);
     await page.close();
+  });
+});
+
+describe("a side view in place of the picture", () => {
+  let page: Page;
+  const palm = async (): Promise<number[]> => {
+    await until(page, () => window.prostm.frame!.run.pageHand && window.prostm.frame!.hands.length > 0, 0, "the page's hand");
+    return page.evaluate(() => [...window.prostm.frame!.hands[0]!.joints.subarray(0, 3)].map((v) => 1000 * v));
+  };
+  beforeAll(async () => {
+    page = await browser.newPage({ viewport: { width: 1100, height: 700 }, colorScheme: "light" });
+    await page.goto(`${program.address}/#folded=&picture=off`);
+    await until(page, () => (window.prostm?.frames ?? 0) > 2 && window.prostm.sideViews > 0, 0, "frames and a side view");
+  });
+  afterAll(() => page.close());
+
+  it("is drawn twice a second", async () => {
+    const count = () => page.evaluate(() => ({ views: window.prostm.sideViews, at: performance.now() }));
+    const from = await count();
+    await page.waitForTimeout(4000);
+    const to = await count(), rate = (1000 * (to.views - from.views)) / (to.at - from.at);
+    expect(rate).toBeLessThanOrEqual(2.05);
+    expect(rate).toBeGreaterThan(1);
+    expect(await page.evaluate(() => window.prostm.pictures)).toBe(0);
+  });
+
+  it("shows array, smoke, hand and focal points, and the hand follows the mouse sideways and up", async () => {
+    /// Pixels of the side view in colours of skin, and of the first path.
+    const seen = () => page.evaluate(() => {
+      const canvas = document.querySelector<HTMLCanvasElement>("#side")!;
+      const { data } = canvas.getContext("2d")!.getImageData(0, 0, canvas.width, canvas.height);
+      let skin = 0, path = 0, smoke = 0, x = 0, y = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        const [r, g, b, a] = [data[i]!, data[i + 1]!, data[i + 2]!, data[i + 3]!];
+        if (Math.abs(r - 227) < 4 && Math.abs(g - 176) < 4 && Math.abs(b - 148) < 4) {
+          ++skin;
+          x += (i / 4) % canvas.width;
+          y += Math.floor(i / 4 / canvas.width);
+        }
+        if (Math.abs(r - 213) < 4 && Math.abs(g - 94) < 4 && b < 4) ++path;
+        if (Math.abs(r - 92) < 6 && Math.abs(g - 116) < 6 && Math.abs(b - 160) < 6 && a > 20) ++smoke;
+      }
+      return { skin, path, smoke, x: x / skin, y: y / skin };
+    });
+    expect((await seen()).skin).toBe(0);
+    await expect.poll(async () => (await seen()).smoke, kSoon).toBeGreaterThan(200);
+    await page.locator("#page-hand").check();
+    await expect.poll(async () => (await seen()).skin, kSoon).toBeGreaterThan(500);
+    await expect.poll(async () => (await seen()).path, kSoon).toBeGreaterThan(20);
+    await until(page, () => {
+      const side = document.querySelector<HTMLCanvasElement>("#side")!;
+      return side.height === side.clientHeight && side.clientHeight > 200;
+    }, 0, "a side view of the final size");
+    const before = await palm(), drawn = await seen();
+    const box = (await page.locator("#side").boundingBox())!, [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 40, y - 20, { steps: 5 });
+    await page.mouse.up();
+    const scale = (box.height / 0.38 < (box.width - 120) / 0.36 ? box.height / 0.38 : (box.width - 120) / 0.36) / 1000; // pixels per mm
+    await expect.poll(async () => (await palm())[0]! - before[0]!, kSoon).toBeCloseTo(40 / scale, 0);
+    await expect.poll(async () => (await palm())[2]! - before[2]!, kSoon).toBeCloseTo(20 / scale, 0);
+    expect((await palm())[1]).toBeCloseTo(before[1]!, 1);
+    await expect.poll(async () => (await seen()).x - drawn.x, kSoon).toBeGreaterThan(25);
+    await expect.poll(async () => drawn.y - (await seen()).y, kSoon).toBeGreaterThan(12);
+    await page.keyboard.press("ArrowUp");
+    await expect.poll(async () => (await palm())[1]! - before[1]!, kSoon).toBeCloseTo(5, 0);
+    const eye = await page.evaluate(() => /eye=/.test(location.hash));
+    expect(eye, "the view in three dimensions stays").toBe(false);
+    await page.locator("#page-hand").uncheck();
   });
 });
 

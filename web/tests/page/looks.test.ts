@@ -20,10 +20,25 @@ afterAll(async () => {
 const kWidths = [390, 1024, 1440, 1920] as const;
 const kHeights: Record<number, number> = { 390: 844, 1024: 768, 1440: 900, 1920: 1080 };
 
+interface Typed extends Window { typed: Map<string, number> }
+
+/// Notes the type size of each text on a canvas of the page [pixels of the page].
+function watchCanvases(): void {
+  const typed = ((window as unknown as Typed).typed = new Map());
+  const whole = CanvasRenderingContext2D.prototype.fillText;
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y, ...rest) {
+    const ratio = this.canvas.width / (this.canvas.clientWidth || this.canvas.width);
+    const size = (parseFloat(/([\d.]+)px/.exec(this.font)![1]!) * this.getTransform().a) / ratio;
+    if (text.trim() !== "") typed.set(text, Math.min(size, typed.get(text) ?? Infinity));
+    whole.call(this, text, x, y, ...rest);
+  };
+}
+
 /// Opens a page of the program without the picture, which is not under test here.
 async function open(theme: "light" | "dark", more = ""): Promise<Page> {
   const page = await browser.newPage({ viewport: { width: 1024, height: 768 }, colorScheme: theme });
   watches.push(new Watch(page));
+  await page.addInitScript(watchCanvases);
   await page.goto(`${program.address}/#folded=&picture=off${more}`);
   await until(page, () => (window.prostm?.frames ?? 0) > 5 && (window.prostm.state?.controls.length ?? 0) > 0, 0, "frames and controls");
   return page;
@@ -55,6 +70,25 @@ const clipped = (page: Page) => page.evaluate(() => {
     }
   }
   return bad;
+});
+
+/// Visible texts of less than 12 pixels, also on canvases.
+const tiny = (page: Page) => page.evaluate(() => {
+  const bad: string[] = [];
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node = walker.nextNode(); node !== null; node = walker.nextNode()) {
+    const element = node.parentElement!, text = (node.textContent ?? "").trim();
+    if (text === "" || !element.checkVisibility() || element.closest("script, noscript, .unseen")) continue;
+    const size = parseFloat(getComputedStyle(element).fontSize);
+    if (size < 12) bad.push(`${text.slice(0, 40)}: ${size}`);
+  }
+  for (const field of document.querySelectorAll<HTMLElement>("input, select, option")) {
+    const size = parseFloat(getComputedStyle(field).fontSize);
+    if (field.checkVisibility() && size < 12) bad.push(`${field.outerHTML.slice(0, 40)}: ${size}`);
+  }
+  const { typed } = window as unknown as Typed;
+  for (const [text, size] of typed) if (size < 11.99) bad.push(`${text} on a canvas: ${size}`);
+  return { bad, onCanvases: typed.size };
 });
 
 /// Distance by which the page can be scrolled sideways [pixels].
@@ -108,8 +142,18 @@ describe.each(["light", "dark"] as const)("a page in the %s theme", (theme) => {
 
   it("leaves room for the planes if there is no picture above them", async () => {
     await until(page, () => document.getElementById("picture")!.dataset.drawn === "false", 0, "no picture");
+    await page.locator("#numbers-group > summary").click(); // folded, as at first
     const plane = (await page.locator('canvas[data-kind="target"]').boundingBox())!;
     expect(plane.y + plane.height).toBeLessThanOrEqual(768);
+    const side = (await page.locator("#side").boundingBox())!;
+    expect(Math.min(side.width, side.height)).toBeGreaterThanOrEqual(95);
+    // also after other sizes
+    for (const width of [1440, 1024]) {
+      await widen(page, width);
+      await page.waitForTimeout(700);
+    }
+    expect((await page.locator("#side").boundingBox())!.height).toBeCloseTo(side.height, 0);
+    await page.locator("#numbers-group > summary").click();
   });
   it.each(kWidths)("fits into a window %i pixels wide", async (width) => {
     await widen(page, width);
@@ -117,12 +161,34 @@ describe.each(["light", "dark"] as const)("a page in the %s theme", (theme) => {
     expect(await page.evaluate(() => document.documentElement.scrollHeight - window.innerHeight)).toBeLessThanOrEqual(0);
     expect(await clipped(page)).toEqual([]);
     expect(await faint(page)).toEqual([]);
+    // the header is one row, and all text is at least 12 pixels high
+    const header = (await page.locator("header").boundingBox())!;
+    expect(header.height).toBeLessThanOrEqual(48);
+    const types = await tiny(page);
+    expect(types.bad).toEqual([]);
+    expect(types.onCanvases).toBeGreaterThan(5);
+  });
+  it("has a menu in a narrow header", async () => {
+    await widen(page, 390);
+    expect(await page.locator("#theme").isVisible()).toBe(false);
+    await page.locator("#menu").click();
+    expect(await page.locator("#theme").isVisible()).toBe(true);
+    expect(await page.locator("#menu").getAttribute("aria-expanded")).toBe("true");
+    expect(await clipped(page)).toEqual([]);
+    expect(await faint(page)).toEqual([]);
+    expect((await tiny(page)).bad).toEqual([]);
+    await page.locator("#theme").focus();
+    await page.keyboard.press("Escape");
+    expect(await page.locator("#theme").isVisible()).toBe(false);
+    await page.locator("#menu").click();
+    await page.locator("h1").click();
+    expect(await page.locator("#theme").isVisible()).toBe(false);
   });
   // leaves the help open: no test follows
   it("is legible while muted, and in its help", async () => {
     await widen(page, 1024);
     await page.locator("#mute").click();
-    await until(page, () => document.getElementById("output-word")!.textContent === "Muted", 0, "muted");
+    await until(page, () => document.getElementById("verdict")!.dataset.verdict === "muted", 0, "muted");
     expect(await faint(page)).toEqual([]);
     await page.locator("#mute").click();
     await page.keyboard.press("?");
@@ -151,7 +217,7 @@ describe("large type", () => {
   it("leaves room for the button next to the longest words on the output", async () => {
     await widen(page, 390);
     await page.locator("#mute").click();
-    await until(page, () => document.getElementById("output-why")!.textContent === "by you or another page", 0, "muted");
+    await until(page, () => document.getElementById("verdict-why")!.textContent === "muted by you or another page", 0, "muted");
     expect(await clipped(page)).toEqual([]);
     await page.locator("#mute").click();
   });

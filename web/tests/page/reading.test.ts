@@ -1,3 +1,4 @@
+import { readFileSync } from "node:fs";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import "../../src/inspection";
@@ -14,7 +15,7 @@ beforeAll(async () => {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, permissions: ["clipboard-read", "clipboard-write"] });
   page = await context.newPage();
   watch = new Watch(page);
-  await page.goto(`${program.address}/#folded=&picture=on`);
+  await page.goto(`${program.address}/#folded=Numbers&picture=on`);
   await until(page, () => (window.prostm?.frames ?? 0) > 3 && window.prostm.pictures > 1, 0, "frames and pictures");
 });
 afterAll(async () => {
@@ -39,8 +40,62 @@ describe("a page without a hand", () => {
     });
     expect(under).toBe("view");
     expect(await page.locator('#tiles [data-number="latency_p50_ms"]').textContent()).toBe("–");
-    expect(await text("output-word")).toBe("Output off");
-    expect(await text("output-why")).toBe("no hand in sight");
+    expect(await text("verdict-word")).toBe("Not playing");
+    expect(await text("verdict-why")).toMatch(/^no hand in sight\. .*Use my mouse as the hand/);
+  });
+});
+
+describe("explanations", () => {
+  const shown = () => page.locator("#tip");
+  it("are not native tooltips, which touch screens do not show", async () => {
+    expect(await page.locator("[title]").count()).toBe(0);
+    const controls = await page.evaluate(() => window.prostm.state!.controls.map((c) => c.label));
+    const tips = await page.locator(".tip").evaluateAll((all) => all.map((e) => e.getAttribute("aria-label")));
+    for (const name of [...controls, "Felt shape", "Felt strength", "Spill", "Lock"]) expect(tips).toContain(`About ${name}`);
+  });
+  it("open and close with the keyboard, and are read out", async () => {
+    const button = page.locator('#verdict [aria-label="About Felt strength"]');
+    await button.focus();
+    await page.keyboard.press("Enter");
+    expect(await shown().textContent()).toMatch(/threshold of touch/);
+    expect(await shown().getAttribute("role")).toBe("status");
+    expect(await button.getAttribute("aria-expanded")).toBe("true");
+    expect(await button.getAttribute("aria-describedby")).toBe("tip");
+    await page.keyboard.press("Escape");
+    expect(await shown().isHidden()).toBe(true);
+    expect(await button.getAttribute("aria-expanded")).toBe("false");
+    await page.keyboard.press("Space");
+    expect(await shown().isVisible()).toBe(true);
+    await page.keyboard.press("Tab");
+    expect(await shown().isHidden()).toBe(true);
+    expect(await page.evaluate(() => window.prostm.state?.transport.playing)).toBe(true);
+  });
+  it("open under the mouse, within the window", async () => {
+    const button = page.locator('[data-control="speed"] .tip');
+    await button.hover();
+    expect(await shown().textContent()).toBe(await page.evaluate(() => window.prostm.state!.controls.find((c) => c.id === "speed")!.help));
+    const box = (await shown().boundingBox())!, window_ = page.viewportSize()!;
+    expect(Math.min(box.x, box.y, window_.width - box.x - box.width, window_.height - box.y - box.height)).toBeGreaterThanOrEqual(0);
+    await page.mouse.move(5, 5);
+    expect(await shown().isHidden()).toBe(true);
+  });
+});
+
+describe("the verdict", () => {
+  it("is all that is shown of the numbers until they are unfolded, and the address keeps that", async () => {
+    const other = await browser.newPage({ viewport: { width: 1440, height: 900 } });
+    await other.goto(`${program.address}/#picture=off`);
+    await until(other, () => (window.prostm?.frames ?? 0) > 1 && document.querySelector('[data-fold="Plan"]') !== null, 0, "frames and controls");
+    expect(await other.locator("#verdict").isVisible()).toBe(true);
+    expect(await other.locator("#tiles").isVisible()).toBe(false);
+    await other.locator('[data-fold="Numbers"] > summary').click();
+    expect(await other.locator("#tiles").isVisible()).toBe(true);
+    const folded = () => other.evaluate(() => new URLSearchParams(location.hash.slice(1)).get("folded"));
+    await expect.poll(folded).not.toBeNull();
+    expect(await folded()).not.toContain("Numbers");
+    await other.reload();
+    await other.locator("#tiles").waitFor();
+    await other.close();
   });
 });
 
@@ -62,24 +117,30 @@ describe("a page with a hand", () => {
   });
 
   it("explains why the hand does not receive the scene's stimulus", async () => {
-    await says("gate-word", "Stimulus");
     await page.locator("#view").focus();
     for (let i = 0; i < 40; ++i) await page.keyboard.press("c");
-    await says("gate-why", "Stretch the fingers");
-    expect(await text("gate-word")).toBe("Stimulus not ready");
+    await says("verdict-why", "Stretch the fingers");
     for (let i = 0; i < 60; ++i) await page.keyboard.press("o");
-    await until(page, () => !document.getElementById("gate-why")!.textContent!.includes("Stretch"), 0, "stretched fingers");
+    await until(page, () => !document.getElementById("verdict-why")!.textContent!.includes("Stretch"), 0, "stretched fingers");
+  });
+
+  it("states how well and how strongly the target is felt", async () => {
+    await until(page, () => Number.isFinite(window.prostm.frame!.numbers[34]) && Number.isFinite(window.prostm.frame!.numbers[38]), 0, "a percept");
+    await expect.poll(() => text("felt-shape"), { timeout: 30_000 }).toMatch(/^-?\d\.\d\d$/);
+    expect(await text("felt-strength")).toMatch(/^\d+ dB (below|above) the threshold of touch$/);
+    expect(await text("felt-strength-words")).toMatch(/^−?\d+ to −?\d+ dB: .* feels? it/);
   });
 
   it("mutes the array with its button and with M", async () => {
-    await says("output-word", "Output on");
+    await says("verdict-word", "Playing");
     await page.locator("#mute").click();
-    await says("output-word", "Muted");
+    await says("verdict-why", "muted by you or another page");
+    expect(await text("verdict-word")).toBe("Not playing");
     await expect.poll(async () => (await program.numbers() as { numbers: { intensity: number } }).numbers.intensity).toBe(0);
     expect(await page.locator("#mute").getAttribute("aria-pressed")).toBe("true");
     await page.locator("#view").focus();
     await page.keyboard.press("m");
-    await says("output-word", "Output on");
+    await until(page, () => document.getElementById("verdict-word")!.textContent === "Playing", 0, "the array plays");
     await expect.poll(async () => (await program.numbers() as { numbers: { intensity: number } }).numbers.intensity).toBeGreaterThan(0);
   });
 
@@ -139,6 +200,61 @@ describe("a page with a hand", () => {
       await page.locator(`label[for="span-${span}"]`).click();
       expect(await page.locator(`#span-${span}`).isChecked()).toBe(true);
     }
+  });
+
+  it("saves all values over time as CSV", async () => {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#save-csv").click()]);
+    expect(download.suggestedFilename()).toMatch(/^prostm-.*\.csv$/);
+    const lines = readFileSync(await download.path(), "utf8").trimEnd().split("\r\n"), rows = lines.map((l) => l.split(","));
+    expect(lines[0]).toMatch(/^run time \[s\],Stages: fluid \[ms\],.*,Felt strength: strongest place \[dB above the threshold of touch\],RMSE: RMSE \[of the largest target\]$/);
+    expect(rows.length).toBeGreaterThan(100);
+    for (const row of rows) expect(row.length).toBe(rows[0]!.length);
+    const times = rows.slice(1).map((r) => Number(r[0]));
+    times.forEach((t, i) => expect(t).toBeGreaterThan(times[i - 1] ?? -1));
+    const now = await page.evaluate(() => window.prostm.frame!.run.time);
+    expect(times[times.length - 1]).toBeLessThanOrEqual(now);
+    expect(times[times.length - 1]).toBeGreaterThan(now - 3);
+    const column = rows[0]!.indexOf("Rates: smoke [Hz]");
+    expect(rows.slice(1).some((r) => Number(r[column]) > 5)).toBe(true);
+  });
+
+  it("looks back at earlier moments, clearly not live, and returns", async () => {
+    await page.locator("#page-hand").uncheck();
+    await expect.poll(() => page.locator("#rewind-at").isEnabled()).toBe(true);
+    await page.locator("#numbers-group > summary").click();
+    const runTime = () => page.evaluate(() => Number(document.querySelector('[data-run="time_s"]')!.textContent));
+    const plane = () => page.evaluate(() => document.querySelector<HTMLCanvasElement>('canvas[data-kind="rendered"]')!.toDataURL());
+    await page.locator("#rewind-at").focus();
+    for (let i = 0; i < 3; ++i) await page.keyboard.press("PageDown");
+    await expect.poll(() => text("rewind-words")).toMatch(/^not live: \d+\.\d s ago, at \d+\.\d s of the run$/);
+    for (const sign of await page.locator(".not-live").all()) expect(await sign.isVisible()).toBe(true);
+    const seen = await runTime(), drawn = await plane();
+    expect(await page.evaluate(() => window.prostm.frame!.run.time)).toBeGreaterThan(seen + 1);
+    expect(Number(/at ([\d.]+) s/.exec((await text("rewind-words"))!)![1])).toBeCloseTo(seen, 1);
+    await page.waitForTimeout(1500);
+    expect(await runTime()).toBe(seen);
+    expect(await plane()).toBe(drawn);
+    // the verdict and the run time at Pause stay live
+    expect(Math.abs(parseFloat((await text("time"))!) - await page.evaluate(() => window.prostm.frame!.run.time))).toBeLessThan(1);
+    expect(await text("verdict-why")).toContain("no hand in sight");
+    const readings = () => page.locator('[data-strip="latency"] .legend b').allTextContents();
+    const before = await readings();
+    await page.waitForTimeout(500);
+    expect(await readings()).toEqual(before);
+    await page.locator("#rewind-live").click();
+    expect(await text("rewind-words")).toBe("live");
+    await expect.poll(runTime).toBeGreaterThan(seen + 2);
+    for (const sign of await page.locator(".not-live").all()) expect(await sign.isVisible()).toBe(false);
+    // the page's hand needs the present
+    await page.locator("#rewind-at").focus();
+    await page.keyboard.press("PageDown");
+    await page.locator("#page-hand").check();
+    await expect.poll(() => text("rewind-words")).toBe("live");
+    expect(await page.locator("#rewind-at").isDisabled()).toBe(true);
+    await page.locator("#numbers-group > summary").click();
+    const { frames, bytes } = await page.evaluate(() => window.prostm.past);
+    expect(frames).toBeGreaterThan(10);
+    expect(bytes).toBeLessThan(48 << 20);
   });
 
   it("shows its help on ?", async () => {
@@ -216,7 +332,7 @@ describe("a page that is touched", () => {
     await tappedPalm();
     await touched.waitForTimeout(1000);
     expect(await note().textContent()).toMatch(/^target .* Pa\nreconstruction .* Pa\ndifference .* Pa\nx −?\d+, y −?\d+ mm, 1\d\d mm over the array$/);
-    await touched.locator("#about").tap();
+    await touched.locator("h1").tap();
     expect(await note().isHidden()).toBe(true);
   });
   it("turns the view with a drag, without a note", async () => {
@@ -225,6 +341,20 @@ describe("a page that is touched", () => {
     await swipe(touched, at.x, at.y, 40);
     expect(await note().isHidden()).toBe(true);
     await expect.poll(() => touched.evaluate(() => location.hash)).not.toBe(before);
+  });
+  it("explains names at a tap, until the next one", async () => {
+    const shown = () => touched.locator("#tip");
+    await touched.locator('#verdict [aria-label="About Felt shape"]').tap();
+    // browsers send the click after the tap
+    await expect.poll(() => shown().textContent()).toMatch(/model of the skin/);
+    await touched.locator("h1").tap();
+    await expect.poll(() => shown().isHidden()).toBe(true);
+    await touched.locator('[data-control="gain"] .tip').tap();
+    await expect.poll(() => shown().isVisible()).toBe(true);
+    await touched.locator('[data-control="gain"] .tip').tap();
+    await expect.poll(() => shown().isHidden()).toBe(true);
+    const small = await touched.locator(".tip:visible").evaluateAll((all) => all.filter((e) => e.getBoundingClientRect().width < 24 || e.getBoundingClientRect().height < 24).length);
+    expect(small).toBe(0);
   });
   it("shows the values at a tap on a plane and on a strip", async () => {
     await touched.locator('canvas[data-kind="target"]').tap();
@@ -318,7 +448,7 @@ describe("a page's state", () => {
 
   it("includes which groups are folded", async () => {
     await page.locator('[data-fold="Plan"] > summary').click();
-    await expect.poll(() => page.evaluate(() => location.hash)).toContain("folded=Plan");
+    await expect.poll(() => page.evaluate(() => location.hash)).toMatch(/folded=[^&]*Plan/);
     await page.reload();
     await until(page, () => (window.prostm?.frames ?? 0) > 1 && document.querySelector('[data-fold="Plan"]') !== null, 0, "the page again");
     expect(await page.locator('[data-fold="Plan"]').getAttribute("open")).toBeNull();

@@ -44,14 +44,14 @@ describe("counts per second", () => {
 
 describe("a history", () => {
   const history = new History(1);
-  for (let i = 0; i <= 4000; ++i) history.add(i / 20, [i]);
-  it("keeps two minutes", () => {
-    expect(history.times[0]).toBeGreaterThan(200 - 121 - 64 / 20 - 0.1);
-    expect(history.times[0]).toBeLessThanOrEqual(200 - 121);
+  for (let i = 0; i <= 12000; ++i) history.add(i / 20, [i]);
+  it("keeps seven minutes", () => {
+    expect(history.times[0]).toBeGreaterThan(600 - 421 - 64 / 20 - 0.1);
+    expect(history.times[0]).toBeLessThanOrEqual(600 - 421);
     expect(history.values[0]!.length).toBe(history.times.length);
   });
   it("finds the sample nearest to a time", () => {
-    for (const [time, value] of [[150, 3000], [150.02, 3000], [150.03, 3001], [500, 4000]] as const) {
+    for (const [time, value] of [[550, 11000], [550.02, 11000], [550.03, 11001], [900, 12000]] as const) {
       expect(history.values[0]![history.nearest(time)]).toBe(value);
     }
     expect(new History(1).nearest(3)).toBe(-1);
@@ -59,6 +59,6 @@ describe("a history", () => {
   it("can be copied, and continues independently of the copy", () => {
     const copy = history.copy();
     history.add(201, [7]);
-    expect(copy.times[copy.times.length - 1]).toBe(200);
+    expect(copy.times[copy.times.length - 1]).toBe(600);
   });
 });

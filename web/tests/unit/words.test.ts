@@ -14,7 +14,7 @@ describe("the output's sign", () => {
     expect(said({ handInSight: true }, 0.4)).toBe("on: ");
     expect(said({ handInSight: true, muted: true }, 0.4)).toMatch(/^muted: by/);
     expect(said({ handInSight: true, calibrating: true }, 0)).toMatch(/^muted: for the calibration/);
-    expect(said({ handInSight: true, hot: true }, 0)).toBe("muted: the array is too hot");
+    expect(said({ handInSight: true, hot: true }, 0)).toBe("muted: because the array is too hot");
     expect(said({ handInSight: false }, 0)).toBe("off: no hand in sight");
     expect(said({ handInSight: true, paused: true }, 0)).toBe("off: paused");
     expect(said({ handInSight: true, fading: true }, 0)).toBe("off: no new plan");
