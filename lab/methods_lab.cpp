@@ -3,6 +3,7 @@
 
 #include "methods/tables.hpp"
 #include "program.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/methods/gallery.hpp"
 
@@ -27,7 +28,8 @@ int main(int argc, char** argv) {
                         rows);
     if (!figure.empty()) methods::draw_ways(figure);
     if (!gallery.empty())
-      methods::draw_gallery_of_ways(methods::render_gallery([](double) {}), gallery);
+      methods::draw_gallery_of_ways(
+          methods::render_gallery(fields::kPatterns.size(), [](double) {}), gallery);
     return rows;
   });
 }

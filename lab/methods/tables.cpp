@@ -74,8 +74,10 @@ void compare_ways(const Targets& targets, std::vector<Row>& rows) {
   Renderer renderer(usx_array(), targets.at(0));
   std::array<Means, kWays.size()> means;
   for (const TargetField& target : targets) {
-    if (!add_ways(renderer, target, means))
+    const std::vector<Rendering> renderings = render_ways(renderer, target);
+    if (renderings.empty())
       throw InputError("a plan's loop is too long for its percept to be computed");
+    add_ways(renderings, means);
   }
   print_model(means);
   print_shapes(means);

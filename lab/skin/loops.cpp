@@ -25,40 +25,39 @@ std::string over_skins(std::size_t skins, Figure figure) {
 }
 
 void print_gains(const LoopTable& table, std::vector<Row>& rows) {
-  const std::size_t usual = LoopTable::usual_speed();
+  const std::size_t middle = table.skins.size() / 2;
   fmt::print(
       "\ngain of a loop at {:.0f} m/s that is felt as the longest with {:.1f}, nominal (lowest – "
       "highest of nine skins)\n{:>8} {:>8} {:>22} {:>22} {:>12}\n",
-      kLoopSpeeds[usual], kLongestGain, "mm", "ms", "along the loop", "whole loop", "exponent 1/2");
-  for (std::size_t l = 0; l < kLoopLengths.size(); ++l) {
-    const double period = kLoopLengths[l] / kLoopSpeeds[usual];
+      kUsualSpeed, kLongestGain, "mm", "ms", "along the loop", "whole loop", "exponent 1/2");
+  for (std::size_t l = 0; l < table.lengths.size(); ++l) {
+    const double period = table.lengths[l] / kUsualSpeed;
     const auto gain = [&](double LoopStrength::*strength) {
       return over_skins(table.skins.size(), [&](std::size_t s) {
-        return kLongestGain * relative_gains(table.skins[s], strength)[l];
+        return kLongestGain * relative_gains(table, s, strength)[l];
       });
     };
-    fmt::print("{:>8.1f} {:>8.1f} {:>22} {:>22} {:>12.2f}\n", 1e3 * kLoopLengths[l], 1e3 * period,
+    fmt::print("{:>8.1f} {:>8.1f} {:>22} {:>22} {:>12.2f}\n", 1e3 * table.lengths[l], 1e3 * period,
                gain(&LoopStrength::along), gain(&LoopStrength::intensity),
-               kLongestGain * std::sqrt(kLoopLengths[l] / kLoopLengths.back()));
+               kLongestGain * std::sqrt(table.lengths[l] / table.lengths.back()));
     rows.push_back(
-        value_row(fmt::format("loop {:.1f} mm, gain", 1e3 * kLoopLengths[l]), "",
-                  kLongestGain * relative_gains(table.nominal(), &LoopStrength::along)[l]));
+        value_row(fmt::format("loop {:.1f} mm, gain", 1e3 * table.lengths[l]), "",
+                  kLongestGain * relative_gains(table, middle, &LoopStrength::along)[l]));
   }
 }
 
 void print_strengths(const LoopTable& table, double LoopStrength::*strength, const char* name) {
   fmt::print("\n{} on the nominal skin [µm], and the speed that is felt strongest\n{:>8}", name,
              "mm");
-  for (const double speed : kLoopSpeeds) fmt::print(" {:>6.0f}", speed);
+  for (const double speed : table.speeds) fmt::print(" {:>6.0f}", speed);
   fmt::print(" m/s {:>6} (all nine skins)\n", "best");
-  for (std::size_t l = 0; l < kLoopLengths.size(); ++l) {
-    fmt::print("{:>8.1f}", 1e3 * kLoopLengths[l]);
+  for (std::size_t l = 0; l < table.lengths.size(); ++l) {
+    fmt::print("{:>8.1f}", 1e3 * table.lengths[l]);
     for (const LoopStrength& here : table.nominal()[l])
       fmt::print(" {:>6.3f}", 1e6 * here.*strength);
-    fmt::print(" {:>10.0f}", strongest_speed(table.nominal()[l], strength));
-    for (const SkinLoops& loops : table.skins) {
-      fmt::print(" {:>2.0f}", strongest_speed(loops[l], strength));
-    }
+    fmt::print(" {:>10.0f}", strongest_speed(table, table.skins.size() / 2, l, strength));
+    for (std::size_t s = 0; s < table.skins.size(); ++s)
+      fmt::print(" {:>2.0f}", strongest_speed(table, s, l, strength));
     fmt::print("\n");
   }
 }

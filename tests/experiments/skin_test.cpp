@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "prostm/core/file/file.hpp"
 #include "prostm/experiments/experiments.hpp"
 #include "prostm/experiments/stimuli.hpp"
 #include "prostm/plan/gain.hpp"
@@ -100,7 +101,7 @@ TEST(SkinBench, TwoFociAreEqualAndWeakerThanOne) {
 
 TEST(SkinBench, ThePlannersGainsMatchTheModel) {
   const std::array<SkinSettings, 1> nominal = {SkinSettings()};
-  const std::array<double, 1> usual = {kLoopSpeeds[LoopTable::usual_speed()]};
+  const std::array<double, 1> usual = {kUsualSpeed};
   const LoopTable table = loop_table(kLoopLengths, usual, nominal, [] {});
   ASSERT_EQ(kSkinGains.size(), kLoopLengths.size());
   const double longest = table.nominal().back()[0].along;
@@ -115,9 +116,32 @@ TEST(SkinBench, SmallLoopsAreStrongestAtTheFastestSpeed) {
   const std::array<double, 1> length = {0.070};
   const LoopTable table = loop_table(length, kLoopSpeeds, nominal, [] {});
   const auto& by_speed = table.nominal()[0];
-  EXPECT_EQ(strongest_speed(by_speed, &LoopStrength::along), 8.0);
-  EXPECT_EQ(strongest_speed(by_speed, &LoopStrength::intensity), 8.0);
+  EXPECT_EQ(strongest_speed(table, 0, 0, &LoopStrength::along), 8.0);
+  EXPECT_EQ(strongest_speed(table, 0, 0, &LoopStrength::intensity), 8.0);
   EXPECT_GT(by_speed[5].along, 5.0 * by_speed[0].along);
+}
+
+TEST(SkinBench, AChartOfOneCircleHasItsOwnLabel) {
+  const CircleCurves of{
+      0.123, {1.0, 2.0, 3.0}, {{{1e-6, 2e-6, 1e-6}, {}, {}}}, {{1e-6, 1e-6, 1e-6}, {}, {}}};
+  const std::string file = testing::TempDir() + "one_circle.png";
+  draw_circles({of}, file);
+
+  CircleCurves other = of;
+  other.circumference = 0.05;
+  const std::string other_file = testing::TempDir() + "another_circle.png";
+  draw_circles({other}, other_file);
+  EXPECT_NE(read_file(file), read_file(other_file));
+}
+
+TEST(SkinBench, TablesKnowTheirOwnLengthsAndSpeeds) {
+  const std::array<SkinSettings, 1> nominal = {SkinSettings()};
+  const std::array<double, 1> length = {0.1};
+  const std::array<double, 2> speeds = {kUsualSpeed, 5.0};
+  const LoopTable table = loop_table(length, speeds, nominal, [] {});
+  EXPECT_EQ(table.lengths, std::vector<double>{0.1});
+  EXPECT_EQ(table.usual_speed(), 0u);
+  EXPECT_EQ(strongest_speed(table, 0, 0, &LoopStrength::along), kUsualSpeed);
 }
 
 }  // namespace

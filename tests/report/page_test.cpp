@@ -7,6 +7,7 @@
 #include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/report/detail/inline_svg.hpp"
+#include "prostm/report/verdict.hpp"
 
 namespace prostm::report {
 namespace {
@@ -38,7 +39,6 @@ bool has(const std::string& text, const std::string& piece) {
 }
 
 TEST(Page, EscapesCharactersThatHtmlInterprets) {
-  EXPECT_EQ(escaped("a<b>&\"c'"), "a&lt;b&gt;&amp;&quot;c&#39;");
   const std::string page = html_of(Json::array({text_block("1 < 2 {/values/word}")}));
   EXPECT_TRUE(has(page, "1 &lt; 2 <span data-from=\"a-part.json#/values/word\">&lt;b&gt;</span>"));
   EXPECT_TRUE(has(page, ">A &amp; B</h2>"));
@@ -59,6 +59,7 @@ TEST(Page, RecordsThePositionOfEachNumber) {
   EXPECT_TRUE(has(page, "#/values/x\" data-digits=\"2\" class=\"n\">0.00<"));
   EXPECT_TRUE(has(page, "#/blocks/1/table/rows/0/a\" data-digits=\"1\" class=\"n\">1.3</td>"));
   EXPECT_TRUE(has(page, "#/blocks/1/table/rows/1/a\" class=\"n\">–</td>"));
+  EXPECT_TRUE(has(page, "<small data-from=\"a-part.json#/blocks/1/table/columns/0/unit\">mm<"));
 }
 
 TEST(Page, ARowMayHaveItsOwnDigitsAndBeMarked) {
@@ -75,6 +76,20 @@ TEST(Page, RejectsPointersWithoutATarget) {
   EXPECT_THROW(html_of(Json::array({Json{{"film", "x"}}})), std::invalid_argument);
 }
 
+TEST(Page, ShowsVerdictsAndOpenBlocksAtOnceAndFoldsTheRest) {
+  Json blocks = Json::array({text_block("folded"), open_block(text_block("shown"))});
+  add_verdicts(blocks,
+               {not_comparable("<no> number."), compare("It is", 9.0, {5.0, 8.0}, {1, " m/s"})});
+  const std::string page = html_of(blocks);
+  const std::size_t details = page.find("<details>");
+  ASSERT_NE(details, page.npos);
+  EXPECT_LT(page.find(">shown<"), details);
+  EXPECT_GT(page.find(">folded<"), details);
+  EXPECT_LT(page.find("class=\"verdict differs\""), page.find("class=\"verdict not-comparable\""));
+  EXPECT_LT(page.find("&lt;no&gt; number."), details);
+  EXPECT_FALSE(has(html_of(Json::array({open_block(text_block("shown"))})), "<details>"));
+}
+
 TEST(Page, PicturesOfOnePageShareNoIdentifiers) {
   const std::string page = html_of(Json::array(
       {figure_block("one.svg", "", "first \"picture\""), figure_block("two.svg", "", "second")}));
@@ -89,9 +104,9 @@ TEST(Page, PicturesOfOnePageShareNoIdentifiers) {
 }
 
 TEST(Page, OutlinesAreRoundedToHundredths) {
-  EXPECT_TRUE(has(detail::inline_svg(kPicture, "p", ""), "d=\"M 1.23 -0.5 L 12 3.1\""));
-  EXPECT_THROW(detail::inline_svg("<p>", "p", ""), std::invalid_argument);
-  EXPECT_THROW(detail::inline_svg("<svg>", "p", ""), std::invalid_argument);
+  EXPECT_TRUE(has(detail::inline_svg(kPicture, "p"), "d=\"M 1.23 -0.5 L 12 3.1\""));
+  EXPECT_THROW(detail::inline_svg("<p>", "p"), std::invalid_argument);
+  EXPECT_THROW(detail::inline_svg("<svg>", "p"), std::invalid_argument);
 }
 
 class Folder : public testing::Test {

@@ -46,7 +46,9 @@ void PlannerColumn::add(const StageTimes& times, const Metrics& m) {
   rmse.add(m.rmse);
   correlation.add(m.correlation);
   coverage.add(m.coverage);
+  skill_0.add(m.skill_0);
   skill_8.add(m.skill_8);
+  spill.add(m.spill);
 }
 
 FieldBench::FieldBench(const PipelineSettings& settings, std::vector<PlannerColumn> columns,

@@ -39,7 +39,7 @@ struct PlannerColumn {
   Kind kind;
   Preset preset;  ///< of paths
   std::array<Distribution, kPlanStages> stage;
-  Distribution rmse, correlation, coverage, skill_8;
+  Distribution rmse, correlation, coverage, skill_0, skill_8, spill;
 
   void add(const StageTimes& times, const Metrics& m);
   Summary total() const { return stage[kPlanStages - 1].summary(); }

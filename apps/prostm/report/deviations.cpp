@@ -76,6 +76,8 @@ void make_deviations(const ReportWork&, nlohmann::ordered_json& document) {
                                                     {"why", "why"},
                                                     {"where", "where"}},
                                                    rows));
+  report::add_verdicts(document["blocks"],
+                       {report::not_comparable("This part lists decisions; it measures nothing.")});
 }
 
 }  // namespace prostm::app

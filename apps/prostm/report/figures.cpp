@@ -1,6 +1,8 @@
 /// The paper's Figs. 1 to 3.
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "plan/plan_pictures.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/core/input_error.hpp"
@@ -68,9 +70,9 @@ PlanFigure figure_of(const TargetField& target, const TracedPlan& traced,
 /// Our steps on the paper's own field, and the paper's steps as digitised from its figure.
 void add_papers_field(const ReportWork& work, const PipelineSettings& settings, Json& document) {
   if (!work.paper_file("fig2.field.json") || !work.paper_file("fig2.json")) {
-    document["blocks"].push_back(report::text_block(
-        "The paper's own field and steps are missing: their files, fig2.field.json and fig2.json, "
-        "were not found (--paper-data)."));
+    report::add_verdicts(document["blocks"],
+                         {report::not_comparable("The paper gives no number for these steps, and "
+                                                 "its own field is not part of prostm.")});
     return;
   }
   const std::string name = work.paper_data + "/fig2.json";
@@ -93,6 +95,11 @@ void add_papers_field(const ReportWork& work, const PipelineSettings& settings, 
       "field, ours and the paper's"));
   document["blocks"].push_back(
       report::table_block("By Eq. (1), on the paper's field", metrics_columns("paths"), rows));
+  report::add_verdicts(
+      document["blocks"],
+      {report::compare(
+          "On the paper's field preset paper has a shape by Eq. (1) of", figure.metrics.skill_0,
+          {beside.metrics.skill_0, std::numeric_limits<double>::infinity()}, {2, ""})});
 }
 
 /// A target's plan by one planner, for the picture and the table.
@@ -151,6 +158,8 @@ void make_figure_one(const ReportWork& work, Json& document) {
       "The scripted hand in four plumes after {/values/time_s:2} s: from the side, the pressure on "
       "its skin with the paths of preset best, and the field that these make by Eq. (1)",
       "The scene from the side, the target on the skin with four closed paths, and their field"));
+  report::add_verdicts(document["blocks"],
+                       {report::not_comparable("The paper's Fig. 1 has no numbers.")});
 }
 
 void make_figure_two(const ReportWork& work, Json& document) {
@@ -198,6 +207,9 @@ void make_figure_three(const ReportWork& work, Json& document) {
                            "For both scenes: target, fields of PRO-STM and of AM"));
   document["blocks"].push_back(report::table_block("By Eq. (1), on these fields",
                                                    metrics_columns("field and method"), rows));
+  report::add_verdicts(document["blocks"],
+                       {report::not_comparable("The paper compares the methods by pictures, and "
+                                               "calls Eq. (1) unsuited to compare them.")});
 }
 
 }  // namespace prostm::app

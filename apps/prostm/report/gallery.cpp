@@ -1,5 +1,6 @@
 #include "prostm/methods/gallery.hpp"
 
+#include "prostm/fields/fields.hpp"
 #include "report/metrics_table.hpp"
 #include "report/report.hpp"
 
@@ -8,27 +9,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::vector<report::Column> columns() {
-  std::vector<report::Column> out = metrics_columns("target and method");
-  out.push_back({"felt_skill_8", "skin: skill_8"});
-  out.push_back({"percept", "strongest percept", "µm", 3});
-  out.push_back({"sensation", "above threshold", "dB", 1});
-  return out;
-}
-
 Json row_of(const std::string& name, const methods::Rendering& rendering) {
-  Json row = metrics_row(name, rendering.of_model);
   const bool felt = rendering.felt_at_all;
-  row["felt_skill_8"] = felt ? Json(rendering.of_felt.skill_8) : Json(nullptr);
-  row["percept"] = felt ? Json(1e6 * rendering.felt.largest) : Json(nullptr);
-  row["sensation"] = felt ? sensation_value(rendering.felt.largest) : Json(nullptr);
-  return row;
+  return metrics_row(name, rendering.of_model, felt ? &rendering.of_felt : nullptr,
+                     felt ? rendering.felt.largest : 0.0);
 }
 
 }  // namespace
 
 void make_gallery(const ReportWork& work, Json& document) {
-  const auto targets = methods::render_gallery([&](double share) { work.progress(share); });
+  const int count = work.full_or_quick(static_cast<int>(fields::kPatterns.size()), 4,
+                                       "generated targets", document);
+  const auto targets = methods::render_gallery(static_cast<std::size_t>(count),
+                                               [&](double share) { work.progress(share); });
   Json rows = Json::array();
   for (const methods::GalleryTarget& of : targets) {
     for (std::size_t w = 0; w < of.renderings.size(); ++w)
@@ -40,9 +33,12 @@ void make_gallery(const ReportWork& work, Json& document) {
       "gallery.svg",
       "Generated targets, and the fields by Eq. (1) of the paper's paths made valid, of presets "
       "best and felt, and of AM; under each its RMSE and skill_8, and what is felt of it",
-      "Nine targets, each with the paths and fields of four methods"));
+      "Each target with the paths and fields of four methods"));
   document["blocks"].push_back(
-      report::table_block("By Eq. (1), and what the skin feels", columns(), rows));
+      report::table_block("Quality of each rendering with the 16 × 16 array at full drive",
+                          metrics_columns("target and method", true), rows));
+  report::add_verdicts(document["blocks"],
+                       {report::not_comparable("The paper has none of these targets.")});
 }
 
 }  // namespace prostm::app

@@ -23,7 +23,7 @@ nlohmann::ordered_json row(const char* what, nlohmann::ordered_json value, int d
 }  // namespace
 
 void make_machine(const ReportWork& work, nlohmann::ordered_json& document) {
-  const Machine machine = look_at_machine(work.full_or_quick(1.0, 0.3));
+  const Machine machine = look_at_machine(work.full_or_quick(1.0, 0.3, "s of sleeps", document));
   utsname system{};
   uname(&system);
   document["values"] = {{"version", version_text()}, {"seed", work.seed}};
@@ -44,6 +44,8 @@ void make_machine(const ReportWork& work, nlohmann::ordered_json& document) {
   rows.push_back(row("the same, max [ms]", 1e3 * machine.sleep_late.max, 3));
   document["timing"].push_back(
       report::table_block("This machine", {{"what", "what"}, {"value", "value", "", 2}}, rows));
+  report::add_verdicts(document["blocks"],
+                       {report::not_comparable("The paper's times are from another machine.")});
 }
 
 }  // namespace prostm::app

@@ -6,16 +6,37 @@
 
 namespace prostm::app {
 
-std::vector<report::Column> metrics_columns(const std::string& heading) {
-  return {{"name", heading},       {"rmse", "RMSE"},       {"correlation", "correlation"},
-          {"skill_8", "skill_8"},  {"overlap", "overlap"}, {"spill", "spill"},
-          {"coverage", "coverage"}};
+std::vector<report::Column> metrics_columns(const std::string& heading, bool felt) {
+  std::vector<report::Column> out = {{"name", heading}, {"shape", "shape by Eq. (1)", "", 2}};
+  if (felt) {
+    out.push_back({"felt_shape", "felt shape", "", 2});
+    out.push_back({"felt_strength", "felt strength", "dB above threshold", 1});
+  }
+  for (const report::Column& column : {report::Column{"spill", "spill"},
+                                       {"rmse", "RMSE by Eq. (1)"},
+                                       {"correlation", "correlation by Eq. (1)"},
+                                       {"skill_8", "S_8.5 by Eq. (1)"},
+                                       {"overlap", "overlap by Eq. (1)"},
+                                       {"coverage", "coverage"}})
+    out.push_back(column);
+  return out;
 }
 
-nlohmann::ordered_json metrics_row(const std::string& name, const Metrics& m) {
-  return {{"name", name},          {"rmse", m.rmse},       {"correlation", m.correlation},
-          {"skill_8", m.skill_8},  {"overlap", m.overlap}, {"spill", m.spill},
-          {"coverage", m.coverage}};
+nlohmann::ordered_json metrics_row(const std::string& name, const Metrics& of_model,
+                                   const Metrics* of_percept, double percept) {
+  nlohmann::ordered_json row = {{"name", name}, {"shape", of_model.skill_0}};
+  row["felt_shape"] = row["felt_strength"] = nullptr;
+  if (of_percept != nullptr) {
+    row["felt_shape"] = of_percept->skill_8;
+    row["felt_strength"] = sensation_value(percept);
+  }
+  row["spill"] = of_model.spill;
+  row["rmse"] = of_model.rmse;
+  row["correlation"] = of_model.correlation;
+  row["skill_8"] = of_model.skill_8;
+  row["overlap"] = of_model.overlap;
+  row["coverage"] = of_model.coverage;
+  return row;
 }
 
 nlohmann::ordered_json sensation_value(double percept) {

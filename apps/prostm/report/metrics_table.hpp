@@ -1,5 +1,5 @@
 #pragma once
-/// Tables of metrics.
+/// Tables of quality: shape by Eq. (1), felt shape, felt strength and spill, then other metrics.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,9 +10,12 @@
 
 namespace prostm::app {
 
-/// @param heading of the first column.
-std::vector<report::Column> metrics_columns(const std::string& heading);
-nlohmann::ordered_json metrics_row(const std::string& name, const Metrics& metrics);
+/// @param heading of the first column. @param felt whether there are columns of the percept.
+std::vector<report::Column> metrics_columns(const std::string& heading, bool felt = false);
+/// @param of_model metrics by Eq. (1). @param of_percept metrics of the percept, if computed.
+/// @param percept its strongest place, with the array usx at its nominal amplitude [m].
+nlohmann::ordered_json metrics_row(const std::string& name, const Metrics& of_model,
+                                   const Metrics* of_percept = nullptr, double percept = 0.0);
 /// Returns the sensation level [dB] of a percept [m] from the array usx; null below every level.
 nlohmann::ordered_json sensation_value(double percept);
 

@@ -2,6 +2,8 @@
 /// The parts of prostm report. Each computes one subject of the page, and uses nothing of the
 /// others except the fields that the first of them recorded.
 
+#include <fmt/format.h>
+
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,6 +13,7 @@
 #include "prostm/io/recorder.hpp"
 #include "prostm/pipeline/settings.hpp"
 #include "prostm/report/part.hpp"
+#include "prostm/report/verdict.hpp"
 
 namespace prostm::app {
 
@@ -23,12 +26,16 @@ struct ReportWork {
   int seed = 1;
   std::string paper_data;  ///< folder of the paper's figures as data; empty: none
   const report::PartFolder& folder;
-  /// Reports the share of the part that is done, 0..1. @throws ReportStopped
+  /// Reports the share of the part that is done, 0..1, on any thread. @throws ReportStopped
   std::function<void(double share)> progress;
 
-  /// Returns one value for a full report, another for a quick one.
+  /// Returns one value for a full report, another for a quick one, whose page states it.
+  /// @param what unit and meaning of the value, in words. @param document of the part; "lowered"
+  /// gets a line.
   template <class Value>
-  Value full_or_quick(Value full, Value fast) const {
+  Value full_or_quick(Value full, Value fast, const char* what,
+                      nlohmann::ordered_json& document) const {
+    if (quick) document["lowered"].push_back(fmt::format("{} instead of {} {}", fast, full, what));
     return quick ? fast : full;
   }
   /// Returns the text of a file of the paper's data, or nothing without it. @throws InputError
@@ -61,6 +68,9 @@ struct ReportPart {
   void (*make)(const ReportWork& work, nlohmann::ordered_json& document);
 };
 std::span<const ReportPart> report_parts();
+
+/// The part with which the page opens, from the numbers of all others.
+report::Part report_findings(const std::vector<report::Part>& parts, const ReportWork& work);
 
 void make_about(const ReportWork& work, nlohmann::ordered_json& document);
 void make_scenes(const ReportWork& work, nlohmann::ordered_json& document);

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <boost/crc.hpp>
 #include <filesystem>
+#include <mutex>
 
 #include "common.hpp"
 #include "prostm/commit.hpp"
@@ -48,6 +50,15 @@ std::string left_in_words(double seconds) {
                      std::fmod(seconds, 60.0));
 }
 
+/// Lets the part state what a quick report lowered.
+void add_lowered(Json& document) {
+  if (!document.contains("lowered")) return;
+  const auto lowered = document["lowered"].get<std::vector<std::string>>();
+  auto& blocks = document["blocks"];
+  blocks.insert(blocks.begin(), report::text_block(fmt::format("A quick report has {}.",
+                                                               fmt::join(lowered, ", "))));
+}
+
 /// Makes the missing parts, and shows the progress.
 class ReportRun {
  public:
@@ -57,7 +68,8 @@ class ReportRun {
         work_{given.quick, given.seed, paper_folder(given), folder_,
               [this](double share) { tell(share); }} {}
 
-  /// @return the parts in the page's order. @throws ReportStopped
+  /// @return the findings and the parts that have content, in the page's order.
+  /// @throws ReportStopped
   std::vector<report::Part> all() {
     check_paper_data(work_);
     std::vector<std::optional<report::Part>> found;
@@ -70,6 +82,13 @@ class ReportRun {
       const ReportPart& part = report_parts()[i];
       parts.push_back(found[i] ? *std::move(found[i]) : make(part));
     }
+    report::Part findings = report_findings(parts, work_);
+    findings.document["asked"] = {{"version", version_text()}};
+    folder_.write(findings);
+    std::erase_if(parts, [](const report::Part& part) {
+      return part.document["blocks"].empty() && part.document["timing"].empty();
+    });
+    parts.insert(parts.begin(), std::move(findings));
     return parts;
   }
 
@@ -111,6 +130,7 @@ class ReportRun {
                        {"timing", Json::array()}}};
     const StageTimer timer;
     kind.make(work_, part.document);
+    add_lowered(part.document);
     folder_.write(part);
     done_ += cost(kind);
     ++made_;
@@ -118,7 +138,9 @@ class ReportRun {
     return part;
   }
 
+  /// Parts may call it on several threads.
   void tell(double share) {
+    const std::lock_guard lock(telling_);
     if (interrupt_.requested()) throw ReportStopped{};
     constexpr double kFirst = 2.0;  // work after which its pace is used for the estimate [s]
     const double done = done_ + share * cost(*now_);
@@ -134,6 +156,7 @@ class ReportRun {
   ReportWork work_;
   Progress progress_{"report"};
   const StageTimer since_start_;
+  std::mutex telling_;
   const ReportPart* now_ = nullptr;
   double ahead_ = 0.0, done_ = 0.0;  // of the parts that are made [s]
   int made_ = 0;

@@ -25,7 +25,7 @@ void add_report(Command app, Work& work) {
                       std::string(kPaperData) + ", if it is there")
       .type_name("FOLDER");
   command.add_option("--seed", o->seed, "random seed").show_default();
-  command.add_flag("--quick", o->quick, "fewer fields, hands and speeds: two minutes");
+  command.add_flag("--quick", o->quick, "fewer fields, hands, targets and speeds: one minute");
   command.add_flag("--fresh", o->fresh, "make existing parts again");
   command.footer("Example:\n  prostm report --quick --out report");
   set_work(command, work, o->files, [o] { return report_command(*o); });

@@ -52,7 +52,7 @@ nlohmann::ordered_json row_of(const RecordingReader& recording, const std::strin
 }  // namespace
 
 void make_scenes(const ReportWork& work, nlohmann::ordered_json& document) {
-  const int frames = work.full_or_quick(500, 20);
+  const int frames = work.full_or_quick(500, 20, "fields of each scene", document);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (std::size_t s = 0; s < kReportScenes.size(); ++s) {
     capture(work, kReportScenes[s], frames, 0.5 * static_cast<double>(s));
@@ -67,7 +67,8 @@ void make_scenes(const ReportWork& work, nlohmann::ordered_json& document) {
   auto& blocks = document["blocks"];
   blocks.push_back(report::text_block(
       "The tables below use these fields, which this run made. A scripted hand hovers, sinks, "
-      "tilts and closes in smoke; a field is the pressure on its skin at one update. Its height "
+      "tilts and closes in smoke; a field is the pressure of the smoke on its skin at one update. "
+      "Its height "
       "({/values/height_mm:1} mm), its period ({/values/period_s:1} s) and the noise of its "
       "tracker ({/values/jitter_mm:1} mm) follow from seed {/values/seed}. The planner's settings "
       "were chosen on generated fields and on recorded hands, never on this hand, and with another "
@@ -78,9 +79,12 @@ void make_scenes(const ReportWork& work, nlohmann::ordered_json& document) {
                                         {"first", "first", "s", 2},
                                         {"last", "last", "s", 2},
                                         {"skin", "skin, mean", "cells", 0},
-                                        {"pressure", "highest pressure, mean", "Pa", 4},
-                                        {"highest", "highest of all", "Pa", 4}},
+                                        {"pressure", "highest smoke pressure, mean", "Pa", 4},
+                                        {"highest", "highest smoke pressure of all", "Pa", 4}},
                                        rows));
+  report::add_verdicts(
+      blocks, {report::not_comparable(
+                  "The paper's fields are not published; these are of the same two scenes.")});
 }
 
 }  // namespace prostm::app

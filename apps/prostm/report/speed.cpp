@@ -131,7 +131,7 @@ class Watched final : public RunObserver {
 
 void make_fluid(const ReportWork& work, Json& document) {
   constexpr int kWarmUp = 50, kTurn = 10;
-  const int steps = work.full_or_quick(300, 60);
+  const int steps = work.full_or_quick(300, 60, "steps of each solver", document);
   WorkerPool pool(2);
   std::vector<std::unique_ptr<SteppedSmoke>> smokes;
   for (const Solver& solver : kSolvers) {
@@ -170,10 +170,13 @@ void make_fluid(const ReportWork& work, Json& document) {
   document["timing"].push_back(
       report::table_block("Time of a step, on two threads, solvers in turn",
                           with_quantiles({{"solver", "solver"}}, "ms", 2), times));
+  report::add_verdicts(document["blocks"],
+                       {report::not_comparable("The paper does not say how much divergence its "
+                                               "solver leaves, nor how many sweeps it makes.")});
 }
 
 void make_solvers(const ReportWork& work, Json& document) {
-  const int sets = work.full_or_quick(1000, 100);
+  const int sets = work.full_or_quick(1000, 100, "sets of focal points", document);
   Random random(static_cast<std::uint64_t>(work.seed));
   const TransducerArray array = usx_array();
   const std::size_t methods = kNames<FocusMethod>.size();
@@ -213,10 +216,13 @@ void make_solvers(const ReportWork& work, Json& document) {
       "Time of a set by the solvers of files and pictures, one thread (the live "
       "solver of the emission is another, docs/design/acoustics.md)",
       with_quantiles({{"solver", "solver"}}, "µs", 0), times));
+  report::add_verdicts(
+      document["blocks"],
+      {report::not_comparable("The solver of the paper's array is not published.")});
 }
 
 void make_latency(const ReportWork& work, Json& document) {
-  const double seconds = work.full_or_quick(10.0, 3.0);
+  const double seconds = work.full_or_quick(10.0, 3.0, "s in real time", document);
   PipelineSettings settings = work.settings("four-plumes");
   settings.devices.of<SimulatedArraySettings>().realtime = true;
   settings.scripted_hand.still = true;  // always there
@@ -249,6 +255,8 @@ void make_latency(const ReportWork& work, Json& document) {
     kept.push_back({{"what", name}, {"count", count}});
   timing.push_back(report::table_block("Whether it kept up",
                                        {{"what", "what"}, {"count", "count", "", 0}}, kept));
+  report::add_verdicts(timing,
+                       {report::not_comparable("The paper gives no latency from hand to sound.")});
 }
 
 }  // namespace prostm::app

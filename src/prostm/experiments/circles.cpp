@@ -14,6 +14,13 @@ namespace {
 
 constexpr int kFastest = 15;  // [m/s]
 
+/// 1, 2, … kFastest [m/s]
+std::vector<double> circle_speeds() {
+  std::vector<double> all;
+  for (int v = 1; v <= kFastest; ++v) all.push_back(v);
+  return all;
+}
+
 double largest_rms_displacement(const SkinResponse& response, std::size_t cells) {
   double most = 0.0;
   for (std::size_t c = 0; c < cells; ++c) {
@@ -38,9 +45,9 @@ void append(SkinResponse& response, const Palm& palm, const PressureLoop& loop, 
 
 CircleCurves compute(double circumference, const StmField& field, const Palm& palm,
                      std::vector<SkinResponse>& responses, const Step& step) {
-  CircleCurves curves{circumference, std::vector<Curve>(responses.size()), {}};
+  CircleCurves curves{circumference, circle_speeds(), std::vector<Curve>(responses.size()), {}};
   const Lap lap = circle_lap(circumference);
-  for (const double speed : circle_speeds()) {
+  for (const double speed : curves.speeds) {
     const double period = circumference / speed;
     const std::vector<double> real = field.pressure(lap, period, false);
     for (std::size_t s = 0; s < responses.size(); ++s) {
@@ -61,9 +68,9 @@ Chart chart_of(const std::string& title, const std::vector<CircleCurves>& all, b
               false,
               {},
               false};
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Curve& curve = memoryless ? all[i].memoryless : all[i].nominal();
-    ChartSeries series{fmt::format("{:.0f} mm", 1e3 * kCircumferences[i]), circle_speeds(), {}};
+  for (const CircleCurves& of : all) {
+    const Curve& curve = memoryless ? of.memoryless : of.nominal();
+    ChartSeries series{fmt::format("{:.0f} mm", 1e3 * of.circumference), of.speeds, {}};
     for (const double value : curve.intensity) series.y.push_back(1e6 * value);
     chart.series.push_back(series);
   }
@@ -71,12 +78,6 @@ Chart chart_of(const std::string& title, const std::vector<CircleCurves>& all, b
 }
 
 }  // namespace
-
-std::vector<double> circle_speeds() {
-  std::vector<double> all;
-  for (int v = 1; v <= kFastest; ++v) all.push_back(v);
-  return all;
-}
 
 std::vector<CircleCurves> circle_curves(std::span<const double> circumferences, Skins skins,
                                         const Step& step) {

@@ -17,7 +17,7 @@ using Skins = std::span<const SkinSettings>;
 /// Called repeatedly while an experiment is computed; an exception it throws ends the computation.
 using Step = std::function<void()>;
 
-/// Curves of a circle over speeds of 1 to 15 m/s on one skin.
+/// Curves of a circle over its speeds on one skin.
 struct Curve {
   std::vector<double> intensity;     ///< [m]
   std::vector<double> displacement;  ///< largest rms on the palm [m]
@@ -26,13 +26,13 @@ struct Curve {
 /// Curves of a circle on each skin, and on the nominal one with memoryless transducers.
 struct CircleCurves {
   double circumference = 0.0;  ///< [m]
+  std::vector<double> speeds;  ///< of the values of each curve [m/s]
   std::vector<Curve> skins;
   Curve memoryless;
 
   const Curve& nominal() const { return skins[skins.size() / 2]; }
 };
 inline constexpr std::array kCircumferences = {0.05, 0.1, 0.15, 0.2};  ///< [m]
-std::vector<double> circle_speeds();                                   ///< [m/s]
 std::vector<CircleCurves> circle_curves(std::span<const double> circumferences, Skins skins,
                                         const Step& step);
 void draw_circles(const std::vector<CircleCurves>& all, const std::string& path);
@@ -40,8 +40,9 @@ void draw_circles(const std::vector<CircleCurves>& all, const std::string& path)
 /// Two foci, modulated at 200 Hz: the value midway between them over the higher peak, by gap; 1: a
 /// single peak.
 struct GapCurves {
-  std::vector<double> gaps;               ///< [m]
-  std::vector<double> acoustic;           ///< for the radiation pressure
+  std::vector<double> gaps;      ///< [m]
+  std::vector<double> acoustic;  ///< for the radiation pressure
+  std::vector<SkinSettings> skins;
   std::vector<std::vector<double>> felt;  ///< for the percept on each skin
 };
 inline constexpr double kNoticed = 0.8;    ///< a dip of one Weber fraction, 0.2
@@ -93,21 +94,26 @@ inline constexpr std::array kLoopLengths = {0.035, 0.0525, 0.070, 0.0875,
 inline constexpr std::array kLoopSpeeds = {2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0};  ///< [m/s]
 /// Strengths of circles on one skin, by length and speed.
 using SkinLoops = std::vector<std::vector<LoopStrength>>;
+inline constexpr double kUsualSpeed = 7.0;  ///< speed at which gains are compared [m/s]
 struct LoopTable {
+  std::vector<double> lengths, speeds;  ///< of the strengths [m], [m/s]
+  std::vector<SkinSettings> settings;   ///< of each skin
   std::vector<SkinLoops> skins;
 
   const SkinLoops& nominal() const { return skins[skins.size() / 2]; }
-  /// Index of 7 m/s in kLoopSpeeds.
-  static constexpr std::size_t usual_speed() { return 5; }
+  /// Index of kUsualSpeed in `speeds`. @pre it is there
+  std::size_t usual_speed() const;
 };
 LoopTable loop_table(std::span<const double> lengths, std::span<const double> speeds, Skins skins,
                      const Step& step);
-inline constexpr double kLongestGain = 1.4;  ///< γ of the longest loop at its usual speed, (P9b)
-/// Returns the gain of each length at 7 m/s that makes it as strong as the longest, whose gain
-/// is 1.
-std::vector<double> relative_gains(const SkinLoops& loops, double LoopStrength::*strength);
-/// Returns the speed of kLoopSpeeds at which a loop is strongest [m/s].
-double strongest_speed(const std::vector<LoopStrength>& by_speed, double LoopStrength::*strength);
+inline constexpr double kLongestGain = 1.4;  ///< γ of the longest loop at kUsualSpeed, (P9b)
+/// Returns the gain of each length at kUsualSpeed that makes it as strong as the longest, whose
+/// gain is 1. @param skin index of a skin.
+std::vector<double> relative_gains(const LoopTable& table, std::size_t skin,
+                                   double LoopStrength::*strength);
+/// Returns the speed at which a loop is strongest [m/s]. @param skin, length indices in the table.
+double strongest_speed(const LoopTable& table, std::size_t skin, std::size_t length,
+                       double LoopStrength::*strength);
 void draw_loops(const LoopTable& table, const std::string& path);
 
 /// Returns the x of a curve's maximum over equally spaced x, by a parabola through the highest

@@ -44,6 +44,7 @@ GapCurves gap_curves(Skins skins, const Step& step) {
     responses.back().prepare(1.0 / kGapRate, kSamples);
   }
   GapCurves out;
+  out.skins.assign(skins.begin(), skins.end());
   out.felt.resize(skins.size());
   for (double gap = 6e-3; gap < 60.5e-3; gap += 1.5e-3) {
     const std::vector<double> at_rest =
@@ -85,11 +86,10 @@ void draw_gap(const GapCurves& curves, const std::string& path) {
     chart.series.push_back(series);
   };
   add("pressure", curves.acoustic);
-  const std::size_t all = curves.felt.size(), nominal = all / 2;
-  add("felt, nominal", curves.felt[nominal]);
-  if (all > 1) {
-    add("perceived, slower waves", curves.felt[nominal - all / 3]);
-    add("perceived, faster waves", curves.felt[nominal + all / 3]);
+  const std::size_t nominal = curves.skins.size() / 2;
+  for (std::size_t s = 0; s < curves.skins.size(); ++s) {
+    if (curves.skins[s].loss != curves.skins[nominal].loss) continue;
+    add(fmt::format("felt, waves of {:.0f} m/s", curves.skins[s].fast_speed), curves.felt[s]);
   }
   draw_charts({chart}, path);
 }

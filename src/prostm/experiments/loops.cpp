@@ -32,28 +32,34 @@ double along(const Lap& lap, const Palm& palm, const std::vector<double>& map) {
 }
 
 Chart gain_chart(const LoopTable& table) {
-  Chart chart{"Gain at 7 m/s that equalises loops", "period / ms", "gain", false, {}, false};
-  const auto add = [&](const std::string& name, auto value) {
-    ChartSeries series{name, {}, {}};
-    for (std::size_t l = 0; l < kLoopLengths.size(); ++l) {
-      series.x.push_back(1e3 * kLoopLengths[l] / kLoopSpeeds[LoopTable::usual_speed()]);
-      series.y.push_back(value(l));
-    }
+  Chart chart{fmt::format("Gain at {:.0f} m/s that equalises loops", kUsualSpeed),
+              "period / ms",
+              "gain",
+              false,
+              {},
+              false};
+  const auto add = [&](const std::string& name, const std::vector<double>& gains) {
+    ChartSeries series{name, {}, gains};
+    for (const double length : table.lengths) series.x.push_back(1e3 * length / kUsualSpeed);
     chart.series.push_back(series);
   };
   const auto of = [&](std::size_t skin, double LoopStrength::*strength) {
-    return [&table, skin, strength](std::size_t l) {
-      return kLongestGain * relative_gains(table.skins[skin], strength)[l];
-    };
+    std::vector<double> gains = relative_gains(table, skin, strength);
+    for (double& gain : gains) gain *= kLongestGain;
+    return gains;
   };
-  const std::size_t middle = table.skins.size() / 2;
-  add("along the loop, waves of 7 m/s", of(middle, &LoopStrength::along));
-  add("5 m/s", of(middle - 3, &LoopStrength::along));
-  add("10 m/s", of(middle + 3, &LoopStrength::along));
-  add("whole loop, 7 m/s", of(middle, &LoopStrength::intensity));
-  add("exponent 1/2", [](std::size_t l) {
-    return kLongestGain * std::sqrt(kLoopLengths[l] / kLoopLengths.back());
-  });
+  const std::size_t nominal = table.skins.size() / 2;
+  for (std::size_t s = 0; s < table.skins.size(); ++s) {
+    if (table.settings[s].loss != table.settings[nominal].loss) continue;
+    add(fmt::format("along the loop, waves of {:.0f} m/s", table.settings[s].fast_speed),
+        of(s, &LoopStrength::along));
+  }
+  add(fmt::format("whole loop, {:.0f} m/s", table.settings[nominal].fast_speed),
+      of(nominal, &LoopStrength::intensity));
+  std::vector<double> roots;
+  for (const double length : table.lengths)
+    roots.push_back(kLongestGain * std::sqrt(length / table.lengths.back()));
+  add("exponent 1/2", roots);
   return chart;
 }
 
@@ -64,10 +70,8 @@ Chart speed_chart(const LoopTable& table) {
               false,
               {},
               false};
-  for (std::size_t l = 0; l < kLoopLengths.size(); l += 2) {
-    ChartSeries series{fmt::format("{:.0f} mm", 1e3 * kLoopLengths[l]),
-                       {kLoopSpeeds.begin(), kLoopSpeeds.end()},
-                       {}};
+  for (std::size_t l = 0; l < table.lengths.size(); l += 2) {
+    ChartSeries series{fmt::format("{:.0f} mm", 1e3 * table.lengths[l]), table.speeds, {}};
     for (const LoopStrength& here : table.nominal()[l]) series.y.push_back(1e6 * here.along);
     chart.series.push_back(series);
   }
@@ -84,7 +88,10 @@ LoopTable loop_table(std::span<const double> lengths, std::span<const double> sp
   for (const SkinSettings& settings : skins) {
     responses.emplace_back(SkinModel(settings), palm.patch);
   }
-  LoopTable out;
+  LoopTable out{{lengths.begin(), lengths.end()},
+                {speeds.begin(), speeds.end()},
+                {skins.begin(), skins.end()},
+                {}};
   out.skins.resize(skins.size(), SkinLoops(lengths.size()));
   std::vector<double> map(palm.cells());
   for (std::size_t l = 0; l < lengths.size(); ++l) {
@@ -104,21 +111,26 @@ LoopTable loop_table(std::span<const double> lengths, std::span<const double> sp
   return out;
 }
 
-std::vector<double> relative_gains(const SkinLoops& loops, double LoopStrength::*strength) {
-  const std::size_t usual = LoopTable::usual_speed();
+std::size_t LoopTable::usual_speed() const {
+  return static_cast<std::size_t>(std::ranges::find(speeds, kUsualSpeed) - speeds.begin());
+}
+
+std::vector<double> relative_gains(const LoopTable& table, std::size_t skin,
+                                   double LoopStrength::*strength) {
+  const std::size_t usual = table.usual_speed();
+  const SkinLoops& loops = table.skins[skin];
   std::vector<double> out;
-  for (const auto& of_length : loops) {
+  for (const auto& of_length : loops)
     out.push_back(loops.back()[usual].*strength / (of_length[usual].*strength));
-  }
   return out;
 }
 
-double strongest_speed(const std::vector<LoopStrength>& by_speed, double LoopStrength::*strength) {
-  const auto weaker = [&](const LoopStrength& a, const LoopStrength& b) {
-    return a.*strength < b.*strength;
-  };
-  return kLoopSpeeds[static_cast<std::size_t>(
-      std::max_element(by_speed.begin(), by_speed.end(), weaker) - by_speed.begin())];
+double strongest_speed(const LoopTable& table, std::size_t skin, std::size_t length,
+                       double LoopStrength::*strength) {
+  const std::vector<LoopStrength>& by_speed = table.skins[skin][length];
+  const auto most =
+      std::ranges::max_element(by_speed, {}, [&](const LoopStrength& of) { return of.*strength; });
+  return table.speeds[static_cast<std::size_t>(most - by_speed.begin())];
 }
 
 void draw_loops(const LoopTable& table, const std::string& path) {

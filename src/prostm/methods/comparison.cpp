@@ -22,6 +22,7 @@ void Means::add(const Rendering& r, const Rendering& reference) {
   correlation.add(r.of_model.correlation);
   model_skill.add(r.of_model.skill_0);
   model_overlap.add(r.of_model.overlap);
+  model_spill.add(r.of_model.spill);
   skill_0.add(r.of_envelope.skill_0);
   skill_8.add(r.of_envelope.skill_8);
   overlap.add(r.of_envelope.overlap);
@@ -47,16 +48,18 @@ void Means::add(const Rendering& r, const Rendering& reference) {
   }
 }
 
-bool add_ways(Renderer& renderer, const TargetField& target,
-              std::array<Means, kWays.size()>& means) {
+std::vector<Rendering> render_ways(Renderer& renderer, const TargetField& target) {
   std::vector<Rendering> all;
   for (const Way way : kWays) {
     all.push_back(renderer.render(way, target));
-    if (!all.back().felt_at_all) return false;
+    if (!all.back().felt_at_all) return {};
   }
+  return all;
+}
+
+void add_ways(const std::vector<Rendering>& renderings, std::array<Means, kWays.size()>& means) {
   const auto best = static_cast<std::size_t>(std::ranges::find(kWays, Way::Best) - kWays.begin());
-  for (std::size_t w = 0; w < kWays.size(); ++w) means[w].add(all[w], all[best]);
-  return true;
+  for (std::size_t w = 0; w < kWays.size(); ++w) means[w].add(renderings[w], renderings[best]);
 }
 
 double factor_for(Equal equal, const Rendering& rendering, const Rendering& reference) {

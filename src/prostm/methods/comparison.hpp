@@ -28,10 +28,10 @@ Targets recorded_targets(const std::string& path, int frames);
 
 /// Means over fields for one way of rendering.
 struct Means {
-  Distribution rmse, correlation, model_skill, model_overlap;             ///< by Eq. (1)
-  Distribution skill_0, skill_8, overlap, spill;                          ///< of the envelope
-  Distribution felt_skill_8, felt_correlation, felt_overlap, felt_spill;  ///< of the percept
-  Distribution lack, felt_lack;                                           ///< 1 − S_8.5 of each
+  Distribution rmse, correlation, model_skill, model_overlap, model_spill;  ///< by Eq. (1)
+  Distribution skill_0, skill_8, overlap, spill;                            ///< of the envelope
+  Distribution felt_skill_8, felt_correlation, felt_overlap, felt_spill;    ///< of the percept
+  Distribution lack, felt_lack;                                             ///< 1 − S_8.5 of each
   Distribution side_lobe, ghosts, ghost;
   struct Level {
     Distribution pressure, percept, intensity, lobe, ghost;  ///< [Pa], [µm]
@@ -40,10 +40,11 @@ struct Means {
 
   void add(const Rendering& r, const Rendering& reference);
 };
-/// Renders a target in every way, and adds the results to the means of each. @return false if one
-/// of them has no percept (Rendering::felt_at_all); then nothing is added.
-bool add_ways(Renderer& renderer, const TargetField& target,
-              std::array<Means, kWays.size()>& means);
+/// Renders a target in every way, by kWays. @return nothing if one of them has no percept
+/// (Rendering::felt_at_all).
+std::vector<Rendering> render_ways(Renderer& renderer, const TargetField& target);
+/// Adds the renderings of a target to the means of each way. @pre one rendering for each of kWays
+void add_ways(const std::vector<Rendering>& renderings, std::array<Means, kWays.size()>& means);
 
 /// Draws the target, and for each way the envelope and the percept, for two generated fields.
 void draw_ways(const std::string& path);

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
+#include <span>
 #include <utility>
 
+#include "prostm/core/run_all.hpp"
 #include "prostm/fields/fields.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/plan/plan_settings.hpp"
@@ -34,17 +37,23 @@ GalleryPlan shown(Way way, const Rendering& rendering, const TargetField& target
 
 }  // namespace
 
-std::vector<GalleryTarget> render_gallery(const std::function<void(double)>& progress) {
-  std::vector<GalleryTarget> out;
+std::vector<GalleryTarget> render_gallery(std::size_t targets,
+                                          const std::function<void(double)>& progress) {
   constexpr int kFrame = fields::kFrames / 2;
-  Renderer renderer(usx_array(), fields::make(fields::kPatterns.front(), kFrame));
-  for (const fields::Pattern pattern : fields::kPatterns) {
-    GalleryTarget& shown =
-        out.emplace_back(GalleryTarget{to_string(pattern), fields::make(pattern, kFrame), {}});
-    for (std::size_t w = 0; w < kGalleryWays.size(); ++w)
-      shown.renderings[w] = renderer.render(kGalleryWays[w], shown.target);
-    progress(static_cast<double>(out.size()) / static_cast<double>(fields::kPatterns.size()));
-  }
+  const std::size_t count = targets * kGalleryWays.size();
+  std::vector<GalleryTarget> out;
+  for (const fields::Pattern pattern : std::span(fields::kPatterns).first(targets))
+    out.push_back({to_string(pattern), fields::make(pattern, kFrame), {}});
+  std::atomic<int> done = 0;
+  WorkerPool pool(2);
+  run_all(pool, static_cast<int>(count), [&](int i) {
+    const auto rendering = static_cast<std::size_t>(i);
+    GalleryTarget& of = out[rendering / kGalleryWays.size()];
+    const std::size_t w = rendering % kGalleryWays.size();
+    Renderer renderer(usx_array(), out.front().target, 1);
+    of.renderings[w] = renderer.render(kGalleryWays[w], of.target);
+    progress(static_cast<double>(++done) / static_cast<double>(count));
+  });
   return out;
 }
 
@@ -56,7 +65,7 @@ void draw_gallery_of_ways(const std::vector<GalleryTarget>& targets, const std::
       field.plans.push_back(shown(kGalleryWays[w], of.renderings[w], of.target));
   }
   GalleryPage page;
-  page.title = "Nine targets and what is planned for them";
+  page.title = "Targets and what is planned for them";
   page.note =
       "RMSE and S₈.₅ by Eq. (1); felt: S₈.₅ and strength of the percept by the skin model, with "
       "the "

@@ -1,5 +1,5 @@
 #pragma once
-/// Nine generated targets, each next to its plans by several ways.
+/// Generated targets, each next to its plans by several ways.
 
 #include <array>
 #include <functional>
@@ -18,9 +18,11 @@ struct GalleryTarget {
   std::array<Rendering, kGalleryWays.size()> renderings;  ///< by way
 };
 
-/// Renders the middle frame of each generated sequence for the 16 × 16 array.
-/// @param progress called after each target with the share that is done.
-std::vector<GalleryTarget> render_gallery(const std::function<void(double)>& progress);
+/// Renders the middle frame of the first `targets` generated sequences (of fields::kPatterns) for
+/// the 16 × 16 array, on two threads.
+/// @param progress called on either thread after each rendering, with the share that is done.
+std::vector<GalleryTarget> render_gallery(std::size_t targets,
+                                          const std::function<void(double)>& progress);
 
 /// Draws the targets and the fields of the plans by Eq. (1), with the paths. Under each are its
 /// RMSE and skill_8 by Eq. (1), and skill_8 and strength of the percept.

@@ -133,10 +133,10 @@ std::string to_string(Way way) {
 }
 
 struct Renderer::Parts {
-  Parts(const TransducerArray& given, const TargetField& raster)
+  Parts(const TransducerArray& given, const TargetField& raster, int threads)
       : array(given),
         packed(given, medium),
-        pool(2),
+        pool(threads),
         skin(raster),
         sigma(focus_width(packed, medium, raster.X_DP.translation(), -raster.X_DP.linear().col(2),
                           raster.X_DP.linear().col(0))
@@ -166,6 +166,7 @@ void Renderer::Parts::play(const TargetField& target, Rendering& out) {
   out.mean_power = drives.mean_power;
   out.field = physical_field(packed, medium, target, loop, drives, felt_parts(loop), pool);
   out.felt = skin.feel(target, loop.samples / loop.sample_rate, out.field.parts, out.field.part);
+  out.field.part = {};  // megabytes that nothing else reads
 }
 
 void Renderer::Parts::score(const TargetField& target, Rendering& out) const {
@@ -196,8 +197,8 @@ Rendering Renderer::Parts::felt_am_rendering(const TargetField& target) {
   return best;
 }
 
-Renderer::Renderer(const TransducerArray& array, const TargetField& raster)
-    : parts_(std::make_unique<Parts>(array, raster)) {}
+Renderer::Renderer(const TransducerArray& array, const TargetField& raster, int threads)
+    : parts_(std::make_unique<Parts>(array, raster, threads)) {}
 
 Renderer::~Renderer() = default;
 

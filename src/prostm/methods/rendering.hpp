@@ -37,7 +37,7 @@ inline constexpr std::array kWays = {
 std::string to_string(Way way);
 
 /// One way on one target, with the largest drive at 1; for Flat, with a pressure of 1 Pa. Radiation
-/// pressures [Pa] and percepts [m] scale with the square of the drives.
+/// pressures [Pa] and percepts [m] scale with the square of the drives. `field.part` is empty.
 struct Rendering {
   Plan plan;
   /// Whether the loop is short enough for the percept, is_felt(); if not, only the plan is set.
@@ -53,7 +53,8 @@ struct Rendering {
 /// Plans, simulates the array and computes percepts. Caches the skin's response by loop period.
 class Renderer {
  public:
-  Renderer(const TransducerArray& array, const TargetField& raster);
+  /// @param threads number of threads, on which no result depends.
+  Renderer(const TransducerArray& array, const TargetField& raster, int threads = 2);
   ~Renderer();
 
   /// @pre `target` has the raster of the constructor, and pressure on skin.

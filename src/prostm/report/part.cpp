@@ -34,6 +34,11 @@ bool has_files(const Json& document, const fs::path& folder) {
 
 }  // namespace
 
+Json open_block(Json block) {
+  block["open"] = true;
+  return block;
+}
+
 Json text_block(const std::string& text) {
   return {{"text", text}};
 }

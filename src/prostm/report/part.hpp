@@ -31,6 +31,8 @@ nlohmann::ordered_json table_block(const std::string& caption, const std::vector
 /// picture.
 nlohmann::ordered_json figure_block(const std::string& file, const std::string& caption,
                                     const std::string& alt);
+/// The block, shown without opening the part's details.
+nlohmann::ordered_json open_block(nlohmann::ordered_json block);
 
 /// One part of a report.
 struct Part {

@@ -6,8 +6,6 @@
 #include <cctype>
 #include <stdexcept>
 
-#include "prostm/report/page.hpp"
-
 namespace prostm::report::detail {
 namespace {
 
@@ -66,7 +64,7 @@ std::string_view attribute(std::string_view tag, std::string_view name) {
 
 }  // namespace
 
-std::string inline_svg(std::string_view picture, std::string_view prefix, std::string_view alt) {
+std::string inline_svg(std::string_view picture, std::string_view prefix) {
   const std::size_t begin = picture.find("<svg");
   const std::size_t end = begin == picture.npos ? begin : picture.find('>', begin);
   if (end == picture.npos) throw std::invalid_argument("a picture is not SVG");
@@ -82,8 +80,8 @@ std::string inline_svg(std::string_view picture, std::string_view prefix, std::s
   inner = replaced(inner, "url(#", fmt::format("url(#{}-", prefix));
   inner = replaced(inner, "xlink:href=\"#", fmt::format("href=\"#{}-", prefix));
   inner = replaced(inner, "xlink:href=", "href=");
-  return fmt::format("<svg role=\"img\" aria-label=\"{}\" viewBox=\"{}\" style=\"width:{}\">{}",
-                     escaped(alt), box, width, inner);
+  return fmt::format("<svg aria-hidden=\"true\" viewBox=\"{}\" style=\"width:{}\">{}", box, width,
+                     inner);
 }
 
 }  // namespace prostm::report::detail

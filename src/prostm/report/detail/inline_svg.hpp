@@ -8,8 +8,8 @@ namespace prostm::report::detail {
 
 /// Returns the <svg> element of a picture for a page with several: identifiers begin with `prefix`,
 /// outlines are truncated to hundredths, and namespaces and defaults are omitted.
-/// @param alt text description of the picture. @throws std::invalid_argument: no <svg> element with
+/// @throws std::invalid_argument: no <svg> element with
 /// a viewBox.
-std::string inline_svg(std::string_view picture, std::string_view prefix, std::string_view alt);
+std::string inline_svg(std::string_view picture, std::string_view prefix);
 
 }  // namespace prostm::report::detail
