@@ -86,7 +86,10 @@ TEST(Findings, QualityIsJudgedByItsNumbers) {
   EXPECT_EQ(one_circle("s", weak, strong).agreement, Agrees);
   EXPECT_TRUE(has(one_circle("s", weak, strong).text, "13.0 dB weaker"));
 
-  EXPECT_TRUE(has(felt_strength("s", weak, 12.0, 12.0).text, "some people feel it"));
+  EXPECT_TRUE(has(felt_strength("s", weak, 12.0, 12.0).text,
+                  "5.0 dB below the threshold of touch (-17 to +7 dB for 95 % of people and "
+                  "arrays): some people feel it"));
+  EXPECT_TRUE(has(felt_strength("s", strong, 12.0, 12.0).text, "8.0 dB above the threshold"));
   EXPECT_TRUE(has(felt_strength("s", weak, 1.0, 1.0).text, "hardly anybody feels it"));
   EXPECT_EQ(felt_strength("s", {0.9, 0.9, 13.0}, 12.0, 12.0).agreement, Agrees);
 

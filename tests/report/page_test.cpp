@@ -90,6 +90,10 @@ TEST(Page, ShowsVerdictsAndOpenBlocksAtOnceAndFoldsTheRest) {
   EXPECT_FALSE(has(html_of(Json::array({open_block(text_block("shown"))})), "<details>"));
 }
 
+TEST(Page, LeavesOutPartsWithoutBlocks) {
+  EXPECT_FALSE(has(html_of(Json::array()), "a-part"));
+}
+
 TEST(Page, PicturesOfOnePageShareNoIdentifiers) {
   const std::string page = html_of(Json::array(
       {figure_block("one.svg", "", "first \"picture\""), figure_block("two.svg", "", "second")}));

@@ -23,7 +23,8 @@ nlohmann::ordered_json row(const char* what, nlohmann::ordered_json value, int d
 }  // namespace
 
 void make_machine(const ReportWork& work, nlohmann::ordered_json& document) {
-  const Machine machine = look_at_machine(work.full_or_quick(1.0, 0.3, "s of sleeps", document));
+  const Machine machine =
+      look_at_machine(work.full_or_quick(1.0, 0.3, "s of timed sleeps", document));
   utsname system{};
   uname(&system);
   document["values"] = {{"version", version_text()}, {"seed", work.seed}};

@@ -68,7 +68,7 @@ class ReportRun {
         work_{given.quick, given.seed, paper_folder(given), folder_,
               [this](double share) { tell(share); }} {}
 
-  /// @return the findings and the parts that have content, in the page's order.
+  /// @return the findings and the parts, in the page's order.
   /// @throws ReportStopped
   std::vector<report::Part> all() {
     check_paper_data(work_);
@@ -85,9 +85,6 @@ class ReportRun {
     report::Part findings = report_findings(parts, work_);
     findings.document["asked"] = {{"version", version_text()}};
     folder_.write(findings);
-    std::erase_if(parts, [](const report::Part& part) {
-      return part.document["blocks"].empty() && part.document["timing"].empty();
-    });
     parts.insert(parts.begin(), std::move(findings));
     return parts;
   }

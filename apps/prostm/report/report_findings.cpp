@@ -104,10 +104,15 @@ std::vector<std::string> notes(const Parts& parts, const ReportWork& work) {
   if (!lowered.empty())
     out.push_back(fmt::format("This is a quick report, whose numbers are rougher: {}.",
                               fmt::join(lowered, ", ")));
-  if (!work.paper_file("fig4.json") || !work.paper_file("fig2.json"))
-    out.push_back(
-        "The paper's own data are not included, so its Fig. 4 and half of its Fig. 2 are left out; "
-        "--paper-data names the folder of fig4.json, fig2.json and fig2.field.json.");
+  std::vector<std::string> missing;
+  if (!work.paper_file("fig4.json")) missing.push_back("its Fig. 4");
+  if (!work.paper_file("fig2.json") || !work.paper_file("fig2.field.json"))
+    missing.push_back("half of its Fig. 2");
+  if (!missing.empty())
+    out.push_back(fmt::format(
+        "The paper's own data are not included, so this page lacks {}; --paper-data names the "
+        "folder of fig4.json, fig2.json and fig2.field.json.",
+        fmt::join(missing, " and ")));
   return out;
 }
 

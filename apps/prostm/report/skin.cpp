@@ -7,6 +7,7 @@
 
 #include "prostm/core/run_all.hpp"
 #include "prostm/experiments/experiments.hpp"
+#include "prostm/report/findings.hpp"
 #include "report/report.hpp"
 
 namespace prostm::app {
@@ -150,10 +151,9 @@ void add_squares(const Results& results, const std::vector<double>& speeds, Json
                       {"width", 1e3 * nominal.rms[i].half_width},
                       {"peaks", peaks}});
       if (side < 0.03 || speeds[i] < 8.0 || speeds[i] > 10.0) continue;
-      verdicts.push_back(report::compare(
-          fmt::format("At {:.0f} m/s skins with a maximum inside a square of 3 cm are", speeds[i]),
-          100.0 * static_cast<double>(peaks) / static_cast<double>(looks.size()), {50.0, 100.0},
-          {0, " %"}));
+      const report::Finding of =
+          report::squares(static_cast<int>(peaks), static_cast<int>(looks.size()));
+      verdicts.push_back({of.agreement, fmt::format("At {:.0f} m/s: {}", speeds[i], of.text)});
     }
   }
   verdicts.push_back(report::not_comparable(

@@ -171,9 +171,10 @@ void make_figure_four(const ReportWork& work, Json& document) {
   std::vector<report::Verdict> verdicts;
   for (const StudyMethod& method : kStudyMethods) {
     const double share = 100.0 * shares_of(answers_with(answers, method.name)).back().mean;
+    const double published = 100.0 * method.of_people;
     verdicts.push_back(
-        report::compare(fmt::format("The scores have right answers with {} in", method.name), share,
-                        {100.0 * method.of_people, 100.0 * method.of_people}, {0, " % of trials"}));
+        report::compare(fmt::format("With method {} the scores have right answers in", method.name),
+                        share, {published, published}, {0, " % of trials"}));
   }
   report::add_verdicts(blocks, verdicts);
 }

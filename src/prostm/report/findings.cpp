@@ -14,6 +14,12 @@ using enum Agreement;
 
 constexpr double kEqual = 0.005;  // difference of shapes below which they count as equal
 
+/// "5.7 dB below the threshold of touch"
+std::string level_words(double level) {
+  return fmt::format("{:.1f} dB {} the threshold of touch", std::abs(level),
+                     level < 0.0 ? "below" : "above");
+}
+
 std::string better_with(const Scores& of) {
   const auto [better, worse] = of.am > of.pro_stm
                                    ? std::pair(fmt::format("AM ({:.1f} %)", of.am),
@@ -63,10 +69,10 @@ Finding one_circle(const std::string& scene, const Quality& circle, const Qualit
   const double louder = circle.felt_level - paths.felt_level;
   return {"methods", louder > 0.0 ? Differs : Agrees,
           fmt::format("One plain circle is felt {:.1f} dB {} than the paths of preset best at the "
-                      "same drive ({}): {:+.1f} dB above the threshold of touch, not {:+.1f} dB. "
-                      "Its felt shape is {:.2f}, not {:.2f}.",
+                      "same drive ({}): {}, not {}. Its felt shape is {:.2f}, not {:.2f}.",
                       std::abs(louder), louder > 0.0 ? "stronger" : "weaker", scene,
-                      circle.felt_level, paths.felt_level, circle.felt_shape, paths.felt_shape)};
+                      level_words(circle.felt_level), level_words(paths.felt_level),
+                      circle.felt_shape, paths.felt_shape)};
 }
 
 Finding felt_strength(const std::string& scene, const Quality& best, double below, double above) {
@@ -76,9 +82,9 @@ Finding felt_strength(const std::string& scene, const Quality& best, double belo
                                     : "some people feel it and others do not";
   return {
       "methods", low > 0.0 ? Agrees : Differs,
-      fmt::format("Preset best at full drive ({}) is felt {:+.1f} dB above the published "
-                  "threshold of touch ({:+.0f} to {:+.0f} dB for 95 % of people and arrays): {}.",
-                  scene, best.felt_level, low, high, meaning)};
+      fmt::format("Preset best at full drive ({}) is felt {} ({:+.0f} to {:+.0f} dB for 95 % of "
+                  "people and arrays): {}.",
+                  scene, level_words(best.felt_level), low, high, meaning)};
 }
 
 Finding promised_shape(const std::string& scene, const Quality& best) {

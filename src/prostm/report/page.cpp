@@ -181,7 +181,10 @@ std::string rounded(double value, int digits) {
 std::string page_html(const std::string& title, std::span<const Part> parts,
                       const ReadPicture& read_picture) {
   data sections = data::type::list;
-  for (const Part& part : parts) sections.push_back(Section(part, read_picture).view());
+  for (const Part& part : parts) {
+    if (part.document.at("blocks").empty() && part.document.at("timing").empty()) continue;
+    sections.push_back(Section(part, read_picture).view());
+  }
   data page;
   page.set("title", title);
   page.set("style", std::string(detail::kStyle));

@@ -21,7 +21,6 @@ p{max-width:54rem;margin:.5rem 0}
 a{color:var(--link)}
 nav ul{display:flex;flex-wrap:wrap;gap:.3rem 1.1rem;list-style:none;margin:0;padding:0}
 .finding,.verdict{border-left:4px solid var(--line);padding-left:.7rem;margin:.4rem 0}
-.finding a{white-space:nowrap}
 .finding.differs,.verdict.differs{border-color:var(--differs)}
 .finding.agrees,.verdict.agrees{border-color:var(--agrees)}
 .verdict.differs b{color:var(--differs)}
