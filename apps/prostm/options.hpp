@@ -11,6 +11,7 @@
 #include "prostm/study/analysis/analysis.hpp"
 #include "prostm/study/analysis/model_study.hpp"
 #include "prostm/study/analysis/percepts.hpp"
+#include "prostm/study/analysis/study_power.hpp"
 
 namespace prostm::app {
 
@@ -154,9 +155,23 @@ struct AnalyseOptionsGiven {
   Files files;
   std::vector<std::string> answers;
   std::string json, figure;
-  std::string tidy;  ///< file for the answers
+  std::string tidy;                 ///< file for the answers
+  std::optional<std::string> ties;  ///< of paired comparisons
   ReadingSettings reading;
   AnalysisSettings settings;
+};
+
+struct PowerOptionsGiven {
+  Files files;
+  std::string json;
+  std::string methods = "between";
+  std::optional<double> first, second;  ///< assumed shares of right answers
+  std::optional<int> trials;            ///< of each participant with each method
+  std::optional<double> correlation, alike;
+  StudyDesign design;
+  std::optional<int> participants;  ///< per method, or in total
+  int studies = 2000;
+  std::uint64_t seed = 1;
 };
 
 inline constexpr const char* kPaperData = "../shared/data/paper";
@@ -212,6 +227,7 @@ int study_check_command(const StudyCheckOptionsGiven& options);
 int study_run_command(const StudyRunOptionsGiven& options);
 int study_status_command(const StudyStatusOptionsGiven& options);
 int analyse_command(const AnalyseOptionsGiven& options);
+int power_command(const PowerOptionsGiven& options);
 int simulate_command(const SimulateOptionsGiven& options);
 int experiments_command(const ExperimentsOptionsGiven& options);
 int report_command(const ReportOptionsGiven& options);

@@ -55,8 +55,9 @@ Json comparison_rows(const Analysis& analysis) {
                       {"permutation_p", c.permutation ? Json(c.permutation->p) : Json(nullptr)},
                       {"t", c.t ? Json(c.t->statistic) : Json(nullptr)},
                       {"t_p", c.t ? Json(c.t->p) : Json(nullptr)},
-                      {"d", or_null(c.d)},
-                      {"needed", c.needed ? Json(*c.needed) : Json(nullptr)}});
+                      {"d", c.effect ? Json(c.effect->value) : Json(nullptr)},
+                      {"d_low", c.effect ? Json(c.effect->interval.low) : Json(nullptr)},
+                      {"d_high", c.effect ? Json(c.effect->interval.high) : Json(nullptr)}});
     }
   }
   return rows;
@@ -86,7 +87,8 @@ void add_analysis(const Analysis& analysis, Json& document) {
                            {"t", "t", "", 2},
                            {"t_p", "p", "", 3},
                            {"d", "effect d", "", 2},
-                           {"needed", "needed in a group", "people", 0}},
+                           {"d_low", "from", "", 2},
+                           {"d_high", "to", "", 2}},
                           comparison_rows(analysis)));
   document["values"]["words"] = in_words(analysis);
   blocks.push_back(report::text_block("{/values/words}"));

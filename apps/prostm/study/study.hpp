@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "options.hpp"
 #include "prostm/study/analysis/adjusted.hpp"
 #include "prostm/study/analysis/analysis.hpp"
 
@@ -18,6 +19,13 @@ std::string p_text(double p);
 std::string scene_name(const SceneResult& scene);
 /// Returns the width of a column of names, at least that of its heading.
 std::size_t width_of(std::string_view heading, const std::vector<std::string>& names);
+
+/// Breaks words into lines.
+std::string wrapped(const std::string& words);
+
+/// Analyses tables of paired comparisons. @return the exit status. @throws InputError for options
+/// that do not apply to them, and for bad tables.
+int analyse_pairs(const AnalyseOptionsGiven& options);
 
 /// Prints the trials without an answer by method and scene; nothing if there are no such trials.
 void print_missing(std::FILE* out, const std::vector<MissingAnswers>& missing);

@@ -7,7 +7,9 @@
 #include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/require.hpp"
+#include "prostm/study/analysis/pair_table.hpp"
 #include "study/study.hpp"
+#include "study/study_plan.hpp"
 
 namespace prostm::app {
 
@@ -23,6 +25,19 @@ std::size_t width_of(std::string_view heading, const std::vector<std::string>& n
   std::size_t width = heading.size();
   for (const std::string& name : names) width = std::max(width, name.size());
   return width;
+}
+
+std::string wrapped(const std::string& words) {
+  constexpr std::size_t kWidth = 100;
+  std::string out, line;
+  for (std::size_t at = 0; at < words.size();) {
+    const std::size_t end = std::min(words.find(' ', at), words.size());
+    if (!line.empty() && line.size() + 1 + end - at > kWidth) out += line + '\n', line.clear();
+    if (!line.empty()) line += ' ';
+    line += words.substr(at, end - at);
+    at = end + 1;
+  }
+  return out + line + '\n';
 }
 
 namespace {
@@ -63,21 +78,51 @@ void print_comparisons(std::FILE* out, const Analysis& analysis) {
   for (const Comparison& c : analysis.scenes.front().comparisons)
     pairs.push_back(c.first + ", " + c.second);
   const std::size_t scenes = scene_width(analysis), methods = width_of("methods", pairs);
-  fmt::print(out, "\n  {:<{}}  {:<{}} {:>7} {:>7} {:>7} {:>11} {:>22} {:>6} {:>7}\n", "scene",
-             scenes, "methods", methods, "z", "p", "exact p", "permutation",
-             within ? "paired t" : "Welch's t", "d", "needed");
+  fmt::print(out, "\n  {:<{}}  {:<{}} {:>7} {:>7} {:>7} {:>11} {:>7} {:>22}\n", "scene", scenes,
+             "methods", methods, "z", "p", "exact p", "permutation", "Holm p",
+             within ? "paired t" : "Welch's t");
   for (const SceneResult& scene : analysis.scenes) {
     for (const Comparison& c : scene.comparisons) {
-      fmt::print(out, "  {:<{}}  {:<{}} {:>7.3f} {:>7} {:>7} {:>11} {:>22} {:>6} {:>7}\n",
+      fmt::print(out, "  {:<{}}  {:<{}} {:>7.3f} {:>7} {:>7} {:>11} {:>7} {:>22}\n",
                  scene_name(scene), scenes, c.first + ", " + c.second, methods,
                  c.pooled_z.statistic, p_text(c.pooled_z.p), p_text(c.fisher_p),
                  c.permutation ? p_text(c.permutation->p) : std::string("-"),
+                 c.holm_p ? p_text(*c.holm_p) : std::string("-"),
                  c.t ? fmt::format("{:.2f} (df {:.1f}) {}", c.t->statistic, c.t->df, p_text(c.t->p))
-                     : std::string("-"),
-                 c.d ? fmt::format("{:.2f}", *c.d) : std::string("-"),
-                 c.needed ? std::to_string(*c.needed) : std::string("-"));
+                     : std::string("-"));
     }
   }
+}
+
+/// Prints the sizes of differences over participants, in percentage points and as effect sizes.
+void print_sizes(std::FILE* out, const Analysis& analysis) {
+  std::vector<std::string> pairs;
+  for (const Comparison& c : analysis.scenes.front().comparisons)
+    pairs.push_back(c.second + " - " + c.first);
+  const std::size_t scenes = scene_width(analysis), methods = width_of("difference", pairs);
+  const bool within = analysis.groups == Groups::Within;
+  fmt::print(out, "\n  {:<{}}  {:<{}} {:>7} {:>15} {:>6} {:>15} {:>8}  {}\n", "scene", scenes,
+             "difference", methods, "points", "interval", within ? "d_z" : "d", "interval", "BF",
+             analysis.settings.equivalence ? "equal p" : "");
+  for (const SceneResult& scene : analysis.scenes) {
+    for (const Comparison& c : scene.comparisons) {
+      if (!c.difference) continue;
+      const auto interval = [](const Interval& x, double unit, int digits) {
+        return fmt::format("{:.{}f} to {:.{}f}", unit * x.low, digits, unit * x.high, digits);
+      };
+      fmt::print(out, "  {:<{}}  {:<{}} {:>7.1f} {:>15} {:>6.2f} {:>15} {:>8}  {}\n",
+                 scene_name(scene), scenes, c.second + " - " + c.first, methods,
+                 100.0 * c.difference->value, interval(c.difference->interval, 100.0, 1),
+                 c.effect->value, interval(c.effect->interval, 1.0, 2),
+                 factor_in_words(*c.bayes_factor), c.equal ? p_text(c.equal->p()) : "");
+    }
+  }
+}
+
+/// Whether any comparison has a size over participants.
+bool has_sizes(const Analysis& analysis) {
+  const auto& all = analysis.scenes.front().comparisons;
+  return std::any_of(all.begin(), all.end(), [](const Comparison& c) { return !!c.difference; });
 }
 
 nlohmann::ordered_json test_json(const std::optional<TestResult>& test) {
@@ -110,8 +155,24 @@ nlohmann::ordered_json comparison_json(const Comparison& c) {
     json["permutation_exact"] = c.permutation->exact;
   }
   json["t"] = test_json(c.t);
-  json["effect_size"] = c.d ? nlohmann::ordered_json(*c.d) : nullptr;
-  json["participants_needed"] = c.needed ? nlohmann::ordered_json(*c.needed) : nullptr;
+  for (const char* key : {"holm_p", "difference", "difference_interval", "effect_size",
+                          "effect_size_interval", "bayes_factor"})
+    json[key] = nullptr;
+  if (c.holm_p) json["holm_p"] = *c.holm_p;
+  if (c.difference) {
+    json["difference"] = c.difference->value;
+    json["difference_interval"] = {c.difference->interval.low, c.difference->interval.high};
+    json["effect_size"] = c.effect->value;
+    json["effect_size_interval"] = {c.effect->interval.low, c.effect->interval.high};
+    json["bayes_factor"] = *c.bayes_factor;
+  }
+  if (c.equal) {
+    json["equivalence"] = {{"bound", c.equal->bound},
+                           {"p_above_low", c.equal->p_above_low},
+                           {"p_below_high", c.equal->p_below_high},
+                           {"p", c.equal->p()},
+                           {"interval", {c.equal->interval.low, c.equal->interval.high}}};
+  }
   return json;
 }
 
@@ -140,7 +201,6 @@ nlohmann::ordered_json analysis_json(const Analysis& analysis,
       {"participants", analysis.participants},
       {"chance", analysis.settings.chance},
       {"level", analysis.settings.level},
-      {"power", analysis.settings.power},
       {"seed", analysis.settings.seed},
       {"scenes", scenes}};
   if (!analysis.thresholds.empty()) {
@@ -156,20 +216,6 @@ nlohmann::ordered_json analysis_json(const Analysis& analysis,
   return json;
 }
 
-/// Breaks words into lines.
-std::string wrapped(const std::string& words) {
-  constexpr std::size_t kWidth = 100;
-  std::string out, line;
-  for (std::size_t at = 0; at < words.size();) {
-    const std::size_t end = std::min(words.find(' ', at), words.size());
-    if (!line.empty() && line.size() + 1 + end - at > kWidth) out += line + '\n', line.clear();
-    if (!line.empty()) line += ' ';
-    line += words.substr(at, end - at);
-    at = end + 1;
-  }
-  return out + line + '\n';
-}
-
 void print_notes(std::FILE* out, const std::vector<std::string>& notes) {
   for (const std::string& note : notes) fmt::print(out, "{}\n", note);
   if (!notes.empty()) fmt::print(out, "\n");
@@ -180,8 +226,25 @@ void write_tidy(std::FILE* out, const std::string& path, const std::vector<Answe
   say_written(out, path);
 }
 
+/// Prints the results of a plan, or that there is no plan.
+void print_plan(std::FILE* out, const std::optional<Confirmed>& confirmed) {
+  if (confirmed) {
+    print_confirmed(out, *confirmed);
+  } else {
+    fmt::print(out, "Exploratory: without a plan (prostm study preregister)\n\n");
+  }
+}
+
+/// Adds the results of a plan; all other results are exploratory.
+void add_plan(const std::optional<Confirmed>& confirmed, nlohmann::ordered_json& json) {
+  json["exploratory"] = true;
+  json["confirmatory"] = nullptr;
+  if (confirmed) json["confirmatory"] = confirmed_json(*confirmed);
+}
+
 int analyse_adjusted(const AnalyseOptionsGiven& options, const std::vector<Answer>& answers,
-                     const std::vector<std::string>& notes) {
+                     const std::vector<std::string>& notes,
+                     const std::optional<Confirmed>& confirmed) {
   if (!options.figure.empty())
     throw InputError("--figure draws shares of answers, and these are adjustments; leave it out");
   if (options.settings.guess || options.settings.lapse || options.settings.fit_lapse)
@@ -196,6 +259,7 @@ int analyse_adjusted(const AnalyseOptionsGiven& options, const std::vector<Answe
   if (!words.empty()) words += ' ';
   words += in_words(results, level);
   std::FILE* out = prose(options.json);
+  print_plan(out, confirmed);
   print_notes(out, notes);
   print_missing(out, missing);
   print_adjusted(out, results);
@@ -204,18 +268,23 @@ int analyse_adjusted(const AnalyseOptionsGiven& options, const std::vector<Answe
   nlohmann::ordered_json json = adjusted_json(results, level, words);
   json["missing"] = missing_json(missing);
   json["notes"] = notes;
+  add_plan(confirmed, json);
   write_json(options.json, json);
   say_written(out, options.json);
   return 0;
 }
 
-}  // namespace
-
-int analyse_command(const AnalyseOptionsGiven& options) {
+/// @param plan file of a plan; empty: none.
+int analyse_answers(const AnalyseOptionsGiven& options, const std::string& plan) {
+  if (options.ties)
+    throw InputError(
+        "--ties belongs to tables of paired comparisons (a, b, preferred); leave it out");
   std::vector<std::string> notes;
   const std::vector<Answer> answers = read_answers(options.answers, notes, options.reading);
+  std::optional<Confirmed> confirmed;
+  if (!plan.empty()) confirmed = confirm(plan, options.answers, answers, options.settings.seed);
   if (answers.front().kind == AnswerKind::Adjusted)
-    return analyse_adjusted(options, answers, notes);
+    return analyse_adjusted(options, answers, notes, confirmed);
   const Analysis analysis = [&] {
     const Progress progress("analysing");
     return analyse(answers, options.settings);
@@ -224,27 +293,42 @@ int analyse_command(const AnalyseOptionsGiven& options) {
   std::FILE* out = prose(options.json);
   const std::size_t people = analysis.participants.size();
   if (people == 1) {
-    fmt::print(out, "1 participant, {} method{}\n\n", analysis.scenes.front().methods.size(),
+    fmt::print(out, "1 participant, {} method{}\n", analysis.scenes.front().methods.size(),
                analysis.scenes.front().methods.size() == 1 ? "" : "s");
   } else {
     fmt::print(
-        out, "{} participants, {}\n\n", people,
+        out, "{} participants, {}\n", people,
         analysis.groups == Groups::Within ? "each with all methods" : "each with one method");
   }
+  print_plan(out, confirmed);
   print_notes(out, notes);
   print_missing(out, analysis.missing);
   const bool has_right_answers = analysis.kind == AnswerKind::Right;
   if (has_right_answers) print_methods(out, analysis);
   if (has_right_answers && !analysis.scenes.front().comparisons.empty())
     print_comparisons(out, analysis);
+  if (has_right_answers && has_sizes(analysis)) print_sizes(out, analysis);
   if (!analysis.thresholds.empty()) print_thresholds(out, analysis.thresholds, analysis.kind);
   fmt::print(out, "\n{}", wrapped(words));
   if (!options.figure.empty()) draw_analysis(analysis, options.figure);
   say_written(out, options.figure);
   write_tidy(out, options.tidy, answers);
-  write_json(options.json, analysis_json(analysis, notes, words));
+  nlohmann::ordered_json json = analysis_json(analysis, notes, words);
+  add_plan(confirmed, json);
+  write_json(options.json, json);
   say_written(out, options.json);
   return 0;
+}
+
+}  // namespace
+
+int analyse_command(const AnalyseOptionsGiven& options) {
+  if (are_pair_tables(options.answers)) return analyse_pairs(options);
+  return analyse_answers(options, "");
+}
+
+int planned_analyse_command(const PlannedAnalyseOptionsGiven& options) {
+  return analyse_answers(options, options.plan);
 }
 
 }  // namespace prostm::app

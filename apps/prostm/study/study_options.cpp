@@ -4,6 +4,7 @@
 #include "common.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/plan/preset.hpp"
+#include "study/study_plan.hpp"
 
 namespace prostm::app {
 namespace {
@@ -113,12 +114,15 @@ void add_reading(Command command, ReadingSettings& reading) {
 void add_analyse(Command study, Work& work) {
   auto command =
       study.add_command("analyse", "analyse answers: shares or thresholds, intervals and tests");
-  auto o = std::make_shared<AnalyseOptionsGiven>();
+  auto o = std::make_shared<PlannedAnalyseOptionsGiven>();
   add_input(
       command, o->files, "answers", o->answers,
       "participants' files of prostm study run (.jsonl), tables of answers (.csv, .tsv, .txt; "
       "docs/study/study-files.md), or the scores of the paper's Fig. 4 (.json)")
       .required();
+  add_input(command, o->files, "--plan", o->plan,
+            "run the tests of this plan of prostm study preregister first; everything else is "
+            "exploratory");
   add_reading(command, o->reading);
   command.add_option("--chance", o->settings.chance, "share of right answers by guessing")
       .show_default();
@@ -127,9 +131,13 @@ void add_analyse(Command study, Work& work) {
                   "confidence level of intervals; tests use 1 minus it")
       .show_default();
   command
-      .add_option("--power", o->settings.power,
-                  "power for which the number of participants is computed")
-      .show_default();
+      .add_option("--equivalence", o->settings.equivalence,
+                  "test whether differences of shares are within ± SHARE: the smallest difference "
+                  "of interest, as 0.1")
+      .type_name("SHARE");
+  add_name(command, "--ties", o->ties,
+           "ties in a table of paired comparisons (a, b, preferred): half counts each as half a "
+           "preference for both; omit leaves them out; default: refuse");
   command.add_option("--seed", o->settings.seed, "random seed for splits of many participants")
       .show_default();
   command.add_option("--guess", o->settings.guess,
@@ -148,7 +156,113 @@ void add_analyse(Command study, Work& work) {
   command.footer(
       "Example:\n  prostm study analyse data/made-up-answers.csv --figure answers.svg --tidy "
       "tidy.csv");
-  set_work(command, work, o->files, [o] { return analyse_command(*o); });
+  set_work(command, work, o->files,
+           [o] { return o->plan.empty() ? analyse_command(*o) : planned_analyse_command(*o); });
+}
+
+/// Adds the rules by which a plan leaves answers out.
+void add_exclusions(Command command, Exclusions& rules) {
+  command.add_flag("--exclude-incomplete", rules.incomplete,
+                   "leave out participants who do not finish their session");
+  command.add_flag("--exclude-overridden", rules.overridden_gate,
+                   "leave out trials that are presented although the gate does not pass");
+  command
+      .add_option("--exclude-below", rules.response_below,
+                  "leave out trials with a response time below this")
+      .type_name("SECONDS");
+  command
+      .add_option("--exclude-above", rules.response_above,
+                  "leave out trials with a response time above this")
+      .type_name("SECONDS");
+}
+
+void add_preregister(Command study, Work& work) {
+  auto command =
+      study.add_command("preregister", "write the plan of an analysis before the first answer");
+  auto o = std::make_shared<PreregisterOptionsGiven>();
+  add_input(command, o->common.files, "protocols", o->protocols,
+            "the protocols that are presented (.toml, docs/study/study.md)")
+      .required();
+  command.add_option("-o,--out", o->out, "the plan (.jsonl, docs/study/study-files.md)")
+      .type_name("OUTPUT")
+      .each([o = o.get()](const std::string& path) {
+        o->common.files.writes("--out", path, check_writable);
+      })
+      .required();
+  command
+      .add_option("--answers", o->answers,
+                  "folder of the response files; it must not have answers yet")
+      .type_name("FOLDER")
+      .show_default();
+  add_name(command, "--test", o->test, "of all comparisons, over participants: t or permutation")
+      .show_default();
+  command.add_option("--alpha", o->plan.alpha, "significance level, two-sided").show_default();
+  add_name(command, "--correction", o->correction, "for the number of comparisons: holm or none")
+      .show_default();
+  command
+      .add_option("--equivalence", o->plan.equivalence,
+                  "test whether differences are within ± BOUND, in the unit of the measure")
+      .type_name("BOUND");
+  command.add_flag("--each-scene", o->each_scene, "compare in each scene, too");
+  command.add_option("--participants", o->participants,
+                     "planned number of participants; default: that of the protocols");
+  command.add_option("--chance", o->plan.chance, "share of right answers by guessing")
+      .show_default();
+  add_exclusions(command, o->plan.exclusions);
+  command
+      .add_option("--note", o->plan.notes,
+                  "a hypothesis or another decision; may be given several times")
+      .type_name("TEXT")
+      .repeatable();
+  add_hand(command, o->common, o->hand, o->hand_size);
+  add_input(command, o->common.files, "--settings", o->common.settings_file,
+            "settings that all methods begin with, a TOML file (docs/reference/files.md)");
+  add_device(command, o->common);
+  add_array(command, o->common);
+  command.footer(
+      "Example:\n  prostm study preregister data/protocols/one-plume-or-four.toml -o plan.jsonl "
+      "--equivalence 0.1");
+  set_work(command, work, o->common.files, [o] { return preregister_command(*o); });
+}
+
+void add_power(Command study, Work& work) {
+  auto command =
+      study.add_command("power", "number of participants for a planned comparison of two methods");
+  auto o = std::make_shared<PowerOptionsGiven>();
+  auto first =
+      command.add_option("--first", o->first, "assumed share of right answers with one method")
+          .type_name("SHARE");
+  auto second =
+      command.add_option("--second", o->second, "assumed share with the other").type_name("SHARE");
+  command
+      .add_option("--d", o->design.d,
+                  "assume this effect size instead: d between participants, d_z within")
+      .excludes(first, second);
+  add_name(command, "--methods", o->methods,
+           "between: each participant has one method; within: both")
+      .show_default();
+  command.add_option("--trials", o->trials, "trials of each participant with each method")
+      .show_default("16");
+  command
+      .add_option("--correlation", o->correlation,
+                  "correlation of two answers of a person with a method, 0.001 to 0.9: how much "
+                  "people differ")
+      .show_default("0.1");
+  command
+      .add_option("--alike", o->alike,
+                  "with --methods within, correlation of a person's shares with both methods, 0 to "
+                  "0.99")
+      .show_default("0.5");
+  command.add_option("--participants", o->participants,
+                     "print the power of this number, per method or in total");
+  command.add_option("--alpha", o->design.alpha, "significance level of the two-sided t test")
+      .show_default();
+  command.add_option("--studies", o->studies, "number of simulated studies").show_default();
+  command.add_option("--seed", o->seed, "random seed of the studies").show_default();
+  add_json(command, o->files, o->json);
+  command.footer(
+      "Example:\n  prostm study power --first 0.6 --second 0.75 --trials 16 --participants 20");
+  set_work(command, work, o->files, [o] { return power_command(*o); });
 }
 
 void add_simulate(Command study, Work& work) {
@@ -201,6 +315,8 @@ void add_study(Command app, Work& work) {
   add_study_run(study, work);
   add_status(study, work);
   add_analyse(study, work);
+  add_preregister(study, work);
+  add_power(study, work);
   add_simulate(study, work);
 }
 

@@ -91,9 +91,28 @@ Comparison compare(const MethodResult& a, const MethodResult& b, Groups groups,
   out.permutation =
       within ? paired_permutation(x, y, settings.seed) : permutation(x, y, settings.seed);
   out.t = within ? paired_t(x, y) : welch_t(x, y);
-  out.d = within ? paired_effect_size(x, y) : effect_size(x, y);
-  if (out.d) out.needed = participants_needed(*out.d, groups, settings.power, 1.0 - settings.level);
+  const TwoSamples samples{x, y, groups};
+  out.difference = mean_difference(samples, settings.level);
+  out.effect = standardised_difference(samples, settings.level);
+  out.bayes_factor = bayes_factor(samples);
+  if (settings.equivalence)
+    out.equal = equivalence(samples, *settings.equivalence, 1.0 - settings.level);
   return out;
+}
+
+/// Corrects p over participants for the number of comparisons in all scenes.
+void correct(std::vector<SceneResult>& scenes) {
+  std::vector<Comparison*> family;
+  std::vector<double> p;
+  for (SceneResult& scene : scenes) {
+    for (Comparison& of : scene.comparisons) {
+      if (!of.permutation) continue;
+      family.push_back(&of);
+      p.push_back(of.permutation->p);
+    }
+  }
+  const std::vector<double> corrected = holm(p);
+  for (std::size_t i = 0; i < family.size(); ++i) family[i]->holm_p = corrected[i];
 }
 
 /// Checks that every participant has every scene; otherwise shares over all scenes would confound
@@ -214,7 +233,7 @@ std::vector<MissingAnswers> missing_answers(std::span<const Answer> trials) {
 Analysis analyse(std::span<const Answer> trials, const AnalysisSettings& settings) {
   require_between("chance", settings.chance, 0.01, 0.99);
   require_between("level", settings.level, 0.5, 0.9999);
-  require_between("power", settings.power, 0.1, 0.999);
+  if (settings.equivalence) require_between("equivalence", *settings.equivalence, 0.001, 1.0);
   Analysis out;
   out.missing = missing_answers(trials);
   if (!out.missing.empty()) out.left_out = without_answers(trials);
@@ -250,6 +269,7 @@ Analysis analyse(std::span<const Answer> trials, const AnalysisSettings& setting
       }
     }
   }
+  correct(out.scenes);
   out.thresholds = thresholds_of(answers, out.settings);
   return out;
 }

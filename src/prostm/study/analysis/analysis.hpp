@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "prostm/study/analysis/effects.hpp"
 #include "prostm/study/analysis/scores.hpp"
 #include "prostm/study/analysis/thresholds.hpp"
 #include "prostm/study/task/statistics.hpp"
@@ -14,9 +15,10 @@
 namespace prostm {
 
 struct AnalysisSettings {
-  double chance = 0.5;     ///< share of right answers when guessing, 0..1
-  double level = 0.95;     ///< confidence level, 0..1; a test is significant if p < 1 − level
-  double power = 0.8;      ///< power used to compute the participants needed, 0..1
+  double chance = 0.5;  ///< share of right answers when guessing, 0..1
+  double level = 0.95;  ///< confidence level, 0..1; a test is significant if p < 1 − level
+  /// Bound of the equivalence test: differences of shares within ± this are of no interest, 0..1
+  std::optional<double> equivalence = {};
   std::uint64_t seed = 1;  ///< random seed, used if there are too many splits to count all
   /// γ and λ of psychometric functions, 0..0.9 and 0..0.5; default: γ = chance, or 0 for answers of
   /// kind Felt, and λ = kLapse
@@ -44,9 +46,13 @@ struct Comparison {
   double fisher_p = 1.0;  ///< over answers, exact
   /// over participants; nothing with fewer than two with each method
   std::optional<Permutation> permutation;
-  std::optional<TestResult> t;  ///< over participants: Welch's, or paired
-  std::optional<double> d;      ///< effect size over participants
-  std::optional<int> needed;    ///< participants needed to show this effect, per group or in total
+  /// p of `permutation`, corrected by Holm's method for all comparisons of the analysis
+  std::optional<double> holm_p;
+  std::optional<TestResult> t;         ///< over participants: Welch's, or paired
+  std::optional<Estimate> difference;  ///< of the means of participants' shares
+  std::optional<Estimate> effect;      ///< Cohen's d, or d_z of pairs
+  std::optional<double> bayes_factor;  ///< of a difference over none
+  std::optional<Equivalence> equal;    ///< if settings have a bound
 };
 
 /// The results of one scene.
@@ -93,6 +99,8 @@ std::string in_words(std::span<const MissingAnswers> missing, AnswerKind kind);
 
 /// Describes in plain words what the data support, what they do not, and why.
 std::string in_words(const Analysis& analysis);
+/// A Bayes factor with three digits: "1.13", or "2.4e+05".
+std::string factor_in_words(double factor);
 /// "p = 0.012", or "p < 0.001".
 std::string p_in_words(double p);
 

@@ -25,7 +25,7 @@ class Words {
     say_missing();
     if (is_one_person()) {
       say("All answers are of one participant, so results about people in general are left out "
-          "(tests over participants, dispersion, participants needed)");
+          "(tests over participants, dispersion)");
     }
     if (analysis_.kind == AnswerKind::Felt) {
       say("Answers are for the level (yes, or its interval of the two) or against it; neither is "
@@ -34,13 +34,13 @@ class Words {
       return text_;
     }
     for (const MethodResult& method : all.methods) say_method(method);
-    for (const Comparison& of : all.comparisons) say_difference(of);
+    for (const Comparison& of : all.comparisons) {
+      say_difference(of);
+      say_size(of);
+    }
     for (std::size_t i = 1; i < analysis_.scenes.size(); ++i) say_scene(analysis_.scenes[i]);
     const std::size_t looks = analysis_.scenes.size() * all.comparisons.size();
-    if (looks > 1)
-      say(fmt::format("These are {} comparisons; p values are not corrected for their number",
-                      looks));
-    for (const Comparison& of : all.comparisons) say_needed(of);
+    if (looks > 1) say_looks(looks);
     if (!analysis_.thresholds.empty()) say_thresholds();
     return text_;
   }
@@ -102,7 +102,7 @@ class Words {
     if (of.t)
       sentence += fmt::format("; {} {}", within ? "paired t" : "Welch's t", p_in_words(of.t->p));
     say(sentence + ")");
-    if (!is_significant(of.permutation->p)) {
+    if (!is_significant(of.permutation->p) && !(of.equal && is_significant(of.equal->p()))) {
       say(fmt::format(
           "So these data show neither that {} and {} differ for people in general, nor that they "
           "are equal",
@@ -127,6 +127,28 @@ class Words {
     say(sentence.empty() ? "Answers of one participant are never entirely independent" : sentence);
   }
 
+  /// Describes which comparisons are significant after the correction for their number.
+  void say_looks(std::size_t looks) {
+    const std::string start = fmt::format(
+        "These are {} comparisons, and p values in the text are not corrected for their number",
+        looks);
+    std::vector<std::string> shown;
+    bool any = false;
+    for (const SceneResult& scene : analysis_.scenes) {
+      for (const Comparison& of : scene.comparisons) {
+        any = any || of.holm_p;
+        if (!of.holm_p || !is_significant(*of.holm_p)) continue;
+        shown.push_back(fmt::format("{} and {} in {} ({})", of.first, of.second,
+                                    scene.scene.empty() ? "all scenes" : scene.scene,
+                                    p_in_words(*of.holm_p)));
+      }
+    }
+    if (!any) return say(start);
+    say(start + (shown.empty() ? std::string("; after Holm's correction none is significant")
+                               : fmt::format("; after Holm's correction these are significant: {}",
+                                             fmt::join(shown, ", "))));
+  }
+
   void say_scene(const SceneResult& scene) {
     for (const Comparison& of : scene.comparisons) {
       const auto share = [&](const std::string& name) {
@@ -148,21 +170,31 @@ class Words {
     }
   }
 
-  void say_needed(const Comparison& of) {
-    if (!of.d) return;
-    const bool within = analysis_.groups == Groups::Within;
-    if (!of.needed) {
-      say(
-          fmt::format("The difference between {} and {} (d = {:.2f}) is too small to be shown with "
-                      "fewer than 10 000 participants",
-                      of.first, of.second, *of.d));
-      return;
-    }
+  /// Describes the size of a difference over participants.
+  void say_size(const Comparison& of) {
+    if (!of.difference) return;
+    const double percent = 100.0 * analysis_.settings.level;
     say(
-        fmt::format("To show a difference as large as the one between {} and {} (d = {:.2f}) in "
-                    "{:g} of 100 studies, {} participants{} are needed; this one had {}",
-                    of.first, of.second, *of.d, 100.0 * analysis_.settings.power, *of.needed,
-                    within ? "" : " with each method", had()));
+        fmt::format("{} minus {} is {:.1f} percentage points ({:g} % interval {:.1f} to {:.1f}), "
+                    "{} = {:.2f} ({:.2f} to {:.2f})",
+                    of.second, of.first, 100.0 * of.difference->value, percent,
+                    100.0 * of.difference->interval.low, 100.0 * of.difference->interval.high,
+                    analysis_.groups == Groups::Within ? "d_z" : "d", of.effect->value,
+                    of.effect->interval.low, of.effect->interval.high));
+    const double factor = *of.bayes_factor;
+    say(fmt::format("The data are {} times as likely {} a difference as {} (Bayes factor {})",
+                    factor_in_words(std::max(factor, 1.0 / factor)),
+                    factor >= 1.0 ? "with" : "without", factor >= 1.0 ? "without" : "with",
+                    factor_in_words(factor)));
+    if (of.equal) say_equivalence(*of.equal);
+  }
+
+  void say_equivalence(const Equivalence& of) {
+    say(fmt::format(
+        "The difference is {}within ± {:g} percentage points (two one-sided t tests, "
+        "{}; {:g} % interval {:.1f} to {:.1f})",
+        is_significant(of.p()) ? "" : "not shown to be ", 100.0 * of.bound, p_in_words(of.p()),
+        100.0 * (1.0 - 2.0 * alpha_), 100.0 * of.interval.low, 100.0 * of.interval.high));
   }
 
   void say_thresholds() {
@@ -259,22 +291,17 @@ class Words {
                     analysis_.settings.lapse ? " (--fit-lapse)" : ""));
   }
 
-  std::string had() const {
-    if (analysis_.groups == Groups::Within) return std::to_string(analysis_.participants.size());
-    std::string out;
-    for (const MethodResult& method : analysis_.scenes.front().methods) {
-      out += out.empty() ? "" : " and ";
-      out += std::to_string(method.of_participants.size());
-    }
-    return out;
-  }
-
   const Analysis& analysis_;
   double alpha_;
   std::string text_;
 };
 
 }  // namespace
+
+std::string factor_in_words(double factor) {
+  const bool is_far = factor >= 1000.0 || factor < 0.001;
+  return fmt::format("{:.{}g}", factor, is_far ? 2 : 3);
+}
 
 std::string p_in_words(double p) {
   return p < 0.001 ? std::string("p < 0.001") : fmt::format("p = {:.3f}", p);

@@ -7,44 +7,21 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include "prostm/core/random.hpp"
+#include "prostm/study/task/detail/moments.hpp"
 
 namespace prostm {
 namespace {
 
 namespace bm = boost::math;
+using study::differences, study::mean, study::squares, study::sum_of, study::varies;
 
 constexpr double kTie = 1e-7;  // relative difference below which probabilities count as equal
 
 double two_sided_p(double t, double df) {
   return std::min(1.0, 2.0 * bm::cdf(bm::complement(bm::students_t(df), std::abs(t))));
-}
-
-double mean(std::span<const double> x) {
-  return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
-}
-
-/// Σ (x − mean)².
-double squares(std::span<const double> x) {
-  const double m = mean(x);
-  double sum = 0.0;
-  for (const double v : x) sum += (v - m) * (v - m);
-  return sum;
-}
-
-/// Whether values vary by more than rounding.
-bool varies(std::span<const double> x) {
-  const auto [low, high] = std::minmax_element(x.begin(), x.end());
-  return *high - *low > 1e-12 * std::max(std::abs(*low), std::abs(*high));
-}
-
-std::vector<double> differences(std::span<const double> a, std::span<const double> b) {
-  std::vector<double> out(a.size());
-  std::transform(b.begin(), b.end(), a.begin(), out.begin(), std::minus<>());
-  return out;
 }
 
 /// C(n, k), or more than kMostSplits.
@@ -76,10 +53,6 @@ class Tally {
   double middle_, bound_;
   std::int64_t all_ = 0, as_far_ = 0;
 };
-
-double sum_of(std::span<const double> x) {
-  return std::accumulate(x.begin(), x.end(), 0.0);
-}
 
 /// Integers from low to high.
 struct Range {
