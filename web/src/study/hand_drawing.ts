@@ -12,18 +12,25 @@ function shape(name: string, attributes: Record<string, string | number>): SVGEl
   return element;
 }
 
+/// Edges of the picture [mm]: the same for all questions, with the widest jet whole.
+export const kBox = { x: -115, y: -132, width: 230, height: 242 };
+const kWidest = 110; // radius above which smoke comes from everywhere [mm]
+
 /// @param jets x, y and radius of each [mm], with the fingers along +y.
 export function drawHand(root: HTMLElement, jets: [number, number, number][]): void {
   const wanted = JSON.stringify(jets);
   if (root.dataset.jets === wanted) return;
   root.dataset.jets = wanted;
-  const svg = shape("svg", { viewBox: "-90 -125 180 190", role: "img", "aria-label": "A hand, and smoke on it" });
+  const svg = shape("svg", { viewBox: `${kBox.x} ${kBox.y} ${kBox.width} ${kBox.height}`, role: "img", "aria-label": "A hand, and smoke on it" });
   const hand = shape("g", { class: "hand" });
   hand.append(shape("rect", { x: -38, y: -42, width: 76, height: 84, rx: 26 }));
   hand.append(shape("rect", { x: -26, y: 20, width: 52, height: 45 }));
   for (const [x1, y1, x2, y2, width] of kFingers)
     hand.append(shape("line", { x1, y1: -y1, x2, y2: -y2, "stroke-width": width, "stroke-linecap": "round" }));
   svg.append(hand);
-  for (const [x, y, r] of jets) svg.append(shape("circle", { class: "smoke", cx: x, cy: -y, r }));
+  for (const [x, y, r] of jets) {
+    if (r > kWidest) svg.append(shape("rect", { class: "smoke everywhere", ...kBox }));
+    else svg.append(shape("circle", { class: "smoke", cx: x, cy: -y, r }));
+  }
   root.replaceChildren(svg);
 }

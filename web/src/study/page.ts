@@ -5,14 +5,8 @@ import { find, setText } from "../dom";
 import { entryOf, isCommand } from "../keyboard";
 import { answerOf } from "./answer_keys";
 import { Picture } from "./picture";
+import { progress } from "./progress";
 import type { Controls, Study, StudyAct } from "./messages";
-
-/// The session's progress in words.
-export function progress(study: Study): string {
-  const next = Math.min(study.done + 1, study.trials);
-  if (study.phase === "done") return `All ${study.open ? study.done : study.trials} trials done`;
-  return study.open ? `Trial ${next}` : `Trial ${next} of ${study.trials}`;
-}
 
 export function minutes(seconds: number): string {
   return `${Math.floor(seconds / 60)}:${String(Math.floor(seconds % 60)).padStart(2, "0")}`;
