@@ -36,7 +36,8 @@ FocusRow focus_row(const TransducerArray& array, double height) {
                              absorbed_pressure(array, focus, smallest_amplitude(array)),
                              full_pressure(array, focus)};
   const auto radiation = [](double p) { return radiation_pressure(p, Medium{}); };
-  return {height, acoustic,
+  return {height,
+          acoustic,
           {radiation(acoustic.value), radiation(acoustic.low), radiation(acoustic.high)}};
 }
 
@@ -87,7 +88,8 @@ void print_advice(std::FILE* out, const HeadLevel& head) {
     fmt::print(out,
                "  {:<6} [safety] head_level = {:.0f}: about {:.0f} dB{}; felt strength {:.0f} dB "
                "below full output\n         {}\n",
-               of.use, of.cap, of.level, of.protection > 0.0
+               of.use, of.cap, of.level,
+               of.protection > 0.0
                    ? fmt::format(", {:.0f} dB behind hearing protection", of.level - of.protection)
                    : std::string(),
                of.cost, of.advice);

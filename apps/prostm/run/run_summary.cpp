@@ -65,17 +65,17 @@ std::string world_words(const RunSummary& s) {
 void print_levels(std::FILE* out, const RunSummary& s) {
   const SafetyStats& levels = s.safety;
   if (levels.acoustic_high <= 0.0) return;
-  print_row(out, "levels",
-            fmt::format("peak at a focal point about {:.2g} kPa rms of sound ({:.2g} to {:.2g}), "
-                        "about {:.0f} Pa of radiation pressure on the skin ({:.0f} to {:.0f}); at "
-                        "the head about {:.0f} dB ({:.0f} to {:.0f}), {:.0f} dB for the cap "
-                        "(docs/devices/safety.md); {:.1f} % weakened by caps, {:.1f} % by ramps",
-                        1e-3 * levels.acoustic_likely, 1e-3 * levels.acoustic_low,
-                        1e-3 * levels.acoustic_high, levels.radiation_likely, levels.radiation_low,
-                        levels.radiation_high, levels.head_likely, levels.head_low,
-                        levels.head_bound, levels.head_estimate,
-                        percent(capped_samples(levels), s.emit.samples),
-                        percent(levels.ramp, s.emit.samples)));
+  print_row(
+      out, "levels",
+      fmt::format("peak at a focal point about {:.2g} kPa rms of sound ({:.2g} to {:.2g}), "
+                  "about {:.0f} Pa of radiation pressure on the skin ({:.0f} to {:.0f}); at "
+                  "the head about {:.0f} dB ({:.0f} to {:.0f}), {:.0f} dB for the cap "
+                  "(docs/devices/safety.md); {:.1f} % weakened by caps, {:.1f} % by ramps",
+                  1e-3 * levels.acoustic_likely, 1e-3 * levels.acoustic_low,
+                  1e-3 * levels.acoustic_high, levels.radiation_likely, levels.radiation_low,
+                  levels.radiation_high, levels.head_likely, levels.head_low, levels.head_bound,
+                  levels.head_estimate, percent(capped_samples(levels), s.emit.samples),
+                  percent(levels.ramp, s.emit.samples)));
 }
 
 void print_output(std::FILE* out, const RunSummary& s) {

@@ -79,9 +79,8 @@ HeadLevel head_level(const TransducerArray& array, double distance) {
 std::array<RecommendedLevel, 2> recommended_levels(const HeadLevel& head) {
   constexpr double kAtEar = 110.0, kProtection = 20.0;  // [dB]
   const auto under = [&](const char* use, double protection, const char* advice) {
-    const double lowered = std::max(
-        {0.0, head.likely - protection - kAtEar, head.estimate - SafetySettings{}.head_level});
-    const double cap = std::min(std::floor(head.estimate - lowered), SafetySettings{}.head_level);
+    const double allowed = head.estimate - (head.likely - protection - kAtEar);
+    const double cap = std::min(std::floor(allowed), SafetySettings{}.head_level);
     const double taken = std::max(0.0, head.estimate - cap);
     return RecommendedLevel{use, cap, head.likely - taken, protection, 2.0 * taken, advice};
   };

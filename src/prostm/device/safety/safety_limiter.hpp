@@ -27,7 +27,7 @@ struct SafetyLevels {
   double radiation_per_square;  ///< radiation pressure over acoustic pressure² [1/Pa]
   double share_low;      ///< smallest amplitude over the largest, after the longest way in air
   double likely_by_low;  ///< likely amplitude over the smallest
-  float full_scale;  ///< acoustic pressure of intensity 1, for devices that define it so [Pa]
+  float full_scale;      ///< acoustic pressure of intensity 1, for devices that define it so [Pa]
 };
 
 /// Limits on the samples of a chain.
