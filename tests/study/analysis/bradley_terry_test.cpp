@@ -55,7 +55,7 @@ AbilityDifference difference(const BradleyTerry& fit, const std::string& from,
 
 TEST(BradleyTerry, AgreesWithStatsmodelsOnThreeHundredTables) {
   const test::WithoutTraps in_boost;
-  std::ifstream file(test::source_file("tests/study/expected_effects.jsonl"));
+  std::ifstream file(test::source_file("tests/study/analysis/expected_effects.jsonl"));
   int lines = 0;
   for (std::string text; std::getline(file, text); ++lines) {
     const Json line = Json::parse(text)["bradley_terry"];

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Makes expected_effects.jsonl: sizes of differences of 300 random data sets by scipy and statsmodels.
 
-usage: tests/study/make_expected_effects.py > tests/study/expected_effects.jsonl
-       tests/study/make_expected_effects.py --check     compares the first lines of the file with scipy
+usage: tests/study/analysis/make_expected_effects.py > tests/study/analysis/expected_effects.jsonl
+       tests/study/analysis/make_expected_effects.py --check     compares the first lines of the file with scipy
 
 Needs scipy; without --check also statsmodels 0.13 or newer (apt: python3-statsmodels). A line has values of two methods
 and what effects_test.cpp expects of them: intervals of the difference and of d, two one-sided t tests, Bayes factors,

@@ -37,7 +37,7 @@ cells = 32
 
 
 def test_expected_sizes_are_those_of_scipy():
-    script = ROOT / "tests" / "study" / "make_expected_effects.py"
+    script = ROOT / "tests/study/analysis/make_expected_effects.py"
     if subprocess.run([sys.executable, "-c", "import scipy"], capture_output=True).returncode != 0:
         pytest.skip("needs scipy (apt: python3-scipy)")
     done = subprocess.run([sys.executable, str(script), "--check"], capture_output=True, text=True)

@@ -44,7 +44,7 @@ void expect_sizes(const TwoSamples& of, const Json& expected, const Json& line) 
 
 TEST(Effects, AgreeWithScipyAndStatsmodelsOnThreeHundredDataSets) {
   const test::WithoutTraps in_boost;
-  std::ifstream file(test::source_file("tests/study/expected_effects.jsonl"));
+  std::ifstream file(test::source_file("tests/study/analysis/expected_effects.jsonl"));
   int lines = 0, paired = 0;
   for (std::string text; std::getline(file, text); ++lines) {
     const Json line = Json::parse(text);
