@@ -191,7 +191,7 @@ def test_a_recording_whose_hands_are_all_unsure(refuses, prostm, tmp_path):
         (["report", "--out", "x", "--seed", "-1"], ["--seed = -1", "between 0"]),
         (["report", "--out", "x", "--paper-data", "nowhere"], ["--paper-data nowhere is not a folder"]),
         (["play", "x"], ["not built yet"]),
-        (["study"], ["study needs one of its commands: check, run, status, analyse, simulate", "prostm study --help"]),
+        (["study"], ["study needs one of its commands: check, run, status, analyse, preregister, power, simulate", "prostm study --help"]),
         (["study", "analize"], ['study has no command "analize"; did you mean "analyse"? See prostm study --help']),
         (["study", "run", "p.toml"], ["--participant is missing"]),
         (["study", "simulate", "--trials", "15"], ["trials = 15 must be even"]),
