@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "prostm/core/random.hpp"
+#include "study/power_reference.hpp"
 #include "support/input_errors.hpp"
 #include "support/places.hpp"
 
@@ -80,9 +81,10 @@ void expect_groups(const Json& line) {
         << line;
   }
   const Json& power = line["power"];
-  EXPECT_NEAR(t_test_power(power[0], power[1], Groups::Between), power[2].get<double>(), kNear)
+  EXPECT_NEAR(test::t_test_power(power[0], power[1], Groups::Between), power[2].get<double>(),
+              kNear)
       << line;
-  EXPECT_NEAR(t_test_power(power[0], power[1], Groups::Within), power[3].get<double>(), kNear)
+  EXPECT_NEAR(test::t_test_power(power[0], power[1], Groups::Within), power[3].get<double>(), kNear)
       << line;
 }
 
@@ -110,8 +112,9 @@ TEST(Statistics, MatchThePapersScores) {
   EXPECT_NEAR(splits.p, 0.171, 5e-4);
   EXPECT_NEAR(dispersion(proportions(stm, 16))->statistic / 7.0, 4.7, 0.05);
   EXPECT_NEAR(*effect_size(shares(am, 16), shares(stm, 16)), 0.76, 0.005);
-  EXPECT_EQ(participants_needed(*effect_size(shares(am, 16), shares(stm, 16)), Groups::Between),
-            29);
+  EXPECT_EQ(
+      test::participants_needed(*effect_size(shares(am, 16), shares(stm, 16)), Groups::Between),
+      29);
 }
 
 // Sums of Boost's densities take a second for a hundred thousand answers.
@@ -222,31 +225,6 @@ TEST(Statistics, ChanceOfALeadFollowsFromTheCounts) {
   const std::pair<double, double> computed[] = {{0.05, 0.03002}, {0.10, 0.05794}, {0.15, 0.08409}};
   for (const auto& [correlation, chance] : computed)
     EXPECT_NEAR(chance_of_lead({8, 16, 175.0 / 256.0, correlation}, 19), chance, 1e-5);
-}
-
-TEST(Statistics, PowerGrowsWithParticipantsAndEffect) {
-  const test::WithoutTraps in_boost;
-  for (const Groups groups : {Groups::Between, Groups::Within}) {
-    double before = 0.0;
-    for (int n = 2; n < 200; ++n) {
-      const double power = t_test_power(0.5, n, groups);
-      EXPECT_GT(power, before);
-      EXPECT_LE(power, 1.0);
-      before = power;
-    }
-    for (const double d : {0.05, 0.3, 0.8, 2.0, 9.0, 100.0}) {
-      const std::optional<int> n = participants_needed(d, groups);
-      ASSERT_TRUE(n);
-      EXPECT_GE(t_test_power(d, *n, groups), 0.8);
-      if (*n > 2) {
-        EXPECT_LT(t_test_power(d, *n - 1, groups), 0.8);
-      }
-    }
-    EXPECT_FALSE(participants_needed(0.01, groups));
-    EXPECT_FALSE(participants_needed(0.0, groups));
-  }
-  // without an effect, the test is significant in 5 % of studies
-  EXPECT_NEAR(t_test_power(0.0, 12, Groups::Between), 0.05, 1e-9);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "study/power_reference.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {
@@ -38,11 +39,11 @@ TEST(StudyPower, OfAnEffectSizeIsThatOfTheNoncentralT) {
     for (const double d : {0.3, 0.6, 1.0}) {
       SimulatedStudies studies(of_effect(groups, d), kStudies, 5);
       for (const int n : {8, 16, 40}) {
-        const double exact = t_test_power(d, n, groups);
+        const double exact = test::t_test_power(d, n, groups);
         EXPECT_NEAR(studies.power(n).value(), exact, tolerance(exact)) << d << ' ' << n;
       }
       for (const double power : {0.8, 0.9}) {
-        const double exact = *participants_needed(d, groups, power);
+        const double exact = test::participants_needed(d, groups, power);
         EXPECT_NEAR(*studies.needed(power), exact, 1.0 + 0.06 * exact) << d;
       }
     }
@@ -68,7 +69,7 @@ TEST(StudyPower, OfSharesIsThatOfTheirVariance) {
   const auto variance = [&](double p) { return p * (1.0 - p) * (1.0 + 15.0 * 0.15) / 16.0; };
   const double d = 0.15 / std::sqrt(0.5 * (variance(0.6) + variance(0.75)));
   for (const int n : {15, 30}) {
-    const double exact = t_test_power(d, n, Groups::Between);
+    const double exact = test::t_test_power(d, n, Groups::Between);
     EXPECT_NEAR(studies.power(n).value(), exact, tolerance(exact) + 0.015);
   }
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/non_central_t.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -255,35 +254,6 @@ double chance_of_lead(const AnsweringGroup& group, int lead) {
       chance += right[first] * right[second];
   }
   return chance;
-}
-
-double t_test_power(double d, int n, Groups groups, double alpha) {
-  const bool within = groups == Groups::Within;
-  const double df = within ? n - 1.0 : 2.0 * n - 2.0;
-  const double shift = std::abs(d) * std::sqrt(within ? n : 0.5 * n);
-  const double bound = bm::quantile(bm::complement(bm::students_t(df), 0.5 * alpha));
-  const bm::non_central_t shifted(df, shift);
-  return bm::cdf(bm::complement(shifted, bound)) + bm::cdf(shifted, -bound);
-}
-
-std::optional<int> participants_needed(double d, Groups groups, double power, double alpha) {
-  constexpr int kFewest = 2, kMost = 10'000;
-  const auto is_enough = [&](int n) { return t_test_power(d, n, groups, alpha) >= power; };
-  int low = kFewest, high = kFewest;
-  while (!is_enough(high)) {
-    if (high == kMost) return std::nullopt;
-    low = high + 1;
-    high = std::min(2 * high, kMost);
-  }
-  while (low < high) {
-    const int middle = (low + high) / 2;
-    if (is_enough(middle)) {
-      high = middle;
-    } else {
-      low = middle + 1;
-    }
-  }
-  return high;
 }
 
 }  // namespace prostm

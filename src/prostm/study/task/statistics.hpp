@@ -96,12 +96,5 @@ double chance_of_lead(const AnsweringGroup& group, int lead);
 
 /// Whether each participant has one method or all.
 enum class Groups : std::uint8_t { Between, Within };
-/// Returns the power of a t test for an effect of size d, by the noncentral t distribution. @param
-/// n participants per group, or in total for Groups::Within. @pre n ≥ 2, 0 < alpha < 1.
-double t_test_power(double d, int n, Groups groups, double alpha = 0.05);
-/// Returns the smallest number of participants, per group or in total for Groups::Within, that
-/// gives at least this power; nothing above 10 000. @pre 0 < power < 1.
-std::optional<int> participants_needed(double d, Groups groups, double power = 0.8,
-                                       double alpha = 0.05);
 
 }  // namespace prostm
