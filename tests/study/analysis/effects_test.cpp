@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -74,6 +75,8 @@ TEST(Effects, BayesFactorMatchesPublishedOnes) {
   // Rouder et al., Psychon. Bull. Rev. 16, 225 (2009), with scale 1: of Grider and Malmberg's t(79)
   EXPECT_NEAR(1.0 / jzs_bayes_factor(2.24, 80.0, 79.0, 1.0), 1.02, 0.005);
   EXPECT_NEAR(1.0 / jzs_bayes_factor(2.03, 80.0, 79.0, 1.0), 1.56, 0.005);
+  // beyond the range of doubles
+  EXPECT_EQ(jzs_bayes_factor(581.98, 200.0, 199.0), std::numeric_limits<double>::max());
 }
 
 // Student's sleep data within ± 0.5, as in "Introduction to t_TOST" of R's TOSTER (A. Caldwell):

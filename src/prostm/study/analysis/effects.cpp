@@ -7,6 +7,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 
 #include "prostm/study/task/detail/moments.hpp"
@@ -125,7 +126,9 @@ double jzs_bayes_factor(double t, double n, double df, double scale) {
   using Rule = bm::quadrature::gauss_kronrod<double, 31>;
   constexpr unsigned kDepth = 15;
   constexpr double kError = 1e-12;
-  return std::exp(peak) * Rule::integrate(density, kLow, kHigh, kDepth, kError);
+  const double log_factor = peak + std::log(Rule::integrate(density, kLow, kHigh, kDepth, kError));
+  static const double kLargest = std::log(std::numeric_limits<double>::max());
+  return log_factor < kLargest ? std::exp(log_factor) : std::numeric_limits<double>::max();
 }
 
 std::optional<double> bayes_factor(const TwoSamples& of, double scale) {

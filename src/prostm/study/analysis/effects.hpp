@@ -52,8 +52,8 @@ std::optional<Equivalence> equivalence(const TwoSamples& of, double bound, doubl
 inline constexpr double kPriorScale = 0.5 * std::numbers::sqrt2;
 /// Returns the Bayes factor of a t value for a difference over none, with a Cauchy prior of the
 /// effect size (JZS: Rouder et al., Psychon. Bull. Rev. 16, 225 (2009)) (Y9).
-/// @param n pairs, or n m / (n + m) for two groups. @param df degrees of freedom. @pre n, df,
-/// scale > 0; t is finite.
+/// The largest double if it is beyond that. @param n pairs, or n m / (n + m) for two groups. @param
+/// df degrees of freedom. @pre n, df, scale > 0; t is finite.
 double jzs_bayes_factor(double t, double n, double df, double scale = kPriorScale);
 /// The same of two samples, by the paired t test or that of two groups with equal variances.
 /// Nothing unless the samples vary.

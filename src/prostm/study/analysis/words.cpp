@@ -299,6 +299,9 @@ class Words {
 }  // namespace
 
 std::string factor_in_words(double factor) {
+  constexpr double kOverwhelming = 1e6;  // beyond that only rounding and assumptions matter
+  if (factor > kOverwhelming) return "above 10^6";
+  if (factor < 1.0 / kOverwhelming) return "below 10^-6";
   const bool is_far = factor >= 1000.0 || factor < 0.001;
   return fmt::format("{:.{}g}", factor, is_far ? 2 : 3);
 }
