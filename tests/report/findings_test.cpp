@@ -86,12 +86,9 @@ TEST(Findings, QualityIsJudgedByItsNumbers) {
   EXPECT_EQ(one_circle("s", weak, strong).agreement, Agrees);
   EXPECT_TRUE(has(one_circle("s", weak, strong).text, "13.0 dB weaker"));
 
-  EXPECT_TRUE(has(felt_strength("s", weak, 12.0, 12.0).text,
-                  "5.0 dB below the threshold of touch (-17 to +7 dB for 95 % of people and "
-                  "arrays): some people feel it"));
-  EXPECT_TRUE(has(felt_strength("s", strong, 12.0, 12.0).text, "8.0 dB above the threshold"));
-  EXPECT_TRUE(has(felt_strength("s", weak, 1.0, 1.0).text, "hardly anybody feels it"));
-  EXPECT_EQ(felt_strength("s", {0.9, 0.9, 13.0}, 12.0, 12.0).agreement, Agrees);
+  EXPECT_TRUE(has(felt_strength("s", -17.0, "about 5 dB below").text, "(s): about 5 dB below."));
+  EXPECT_EQ(felt_strength("s", -17.0, "").agreement, Differs);
+  EXPECT_EQ(felt_strength("s", 1.0, "").agreement, Agrees);
 
   EXPECT_EQ(promised_shape("s", weak).agreement, Differs);
   EXPECT_EQ(promised_shape("s", {0.8, 0.85, 0.0}).agreement, Agrees);

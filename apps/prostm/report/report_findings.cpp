@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/report/findings.hpp"
 #include "report/report.hpp"
 #include "study/simulated_study.hpp"
@@ -62,8 +63,10 @@ void add_methods(const Json& methods, std::vector<report::Finding>& out) {
   const report::Quality best = quality(rows, "best");
   const Json& values = methods["values"];
   out.push_back(report::one_circle(scene, quality(rows, "one circle"), best));
-  out.push_back(
-      report::felt_strength(scene, best, values["interval_below"], values["interval_above"]));
+  const SensationInterval interval{values["interval_below"], values["interval_above"],
+                                   SoundSource::Measured};
+  out.push_back(report::felt_strength(scene, best.felt_level - interval.below,
+                                      sensation_words(best.felt_level, interval)));
   out.push_back(report::promised_shape(scene, best));
   out.push_back(
       report::felt_shapes(scene, quality(rows, "preset felt"), best, quality(rows, "AM")));

@@ -75,16 +75,9 @@ Finding one_circle(const std::string& scene, const Quality& circle, const Qualit
                       circle.felt_shape, paths.felt_shape)};
 }
 
-Finding felt_strength(const std::string& scene, const Quality& best, double below, double above) {
-  const double low = best.felt_level - below, high = best.felt_level + above;
-  const char* meaning = high < 0.0  ? "hardly anybody feels it"
-                        : low > 0.0 ? "nearly everybody feels it"
-                                    : "some people feel it and others do not";
-  return {
-      "methods", low > 0.0 ? Agrees : Differs,
-      fmt::format("Preset best at full drive ({}) is felt {} ({:+.0f} to {:+.0f} dB for 95 % of "
-                  "people and arrays): {}.",
-                  scene, level_words(best.felt_level), low, high, meaning)};
+Finding felt_strength(const std::string& scene, double low, const std::string& words) {
+  return {"methods", low > 0.0 ? Agrees : Differs,
+          fmt::format("Felt strength of preset best at full drive ({}): {}.", scene, words)};
 }
 
 Finding promised_shape(const std::string& scene, const Quality& best) {

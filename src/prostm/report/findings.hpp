@@ -38,8 +38,9 @@ struct Quality {
 };
 /// Compares the paths of a plan with one plain circle.
 Finding one_circle(const std::string& scene, const Quality& circle, const Quality& paths);
-/// Whether a plan is felt. @param below, above distances to the ends of the interval of 95 % [dB]
-Finding felt_strength(const std::string& scene, const Quality& best, double below, double above);
+/// Whether a plan is felt. @param low lower end of its interval of 95 % [dB above the threshold of
+/// touch]. @param words those of sensation_words()
+Finding felt_strength(const std::string& scene, double low, const std::string& words);
 /// Whether the shape by Eq. (1) promises more than is felt.
 Finding promised_shape(const std::string& scene, const Quality& best);
 /// Whether paths are felt in a better shape than AM.
