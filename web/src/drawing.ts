@@ -55,6 +55,8 @@ export class Drawing {
   }
 
   show(frame: Frame): void { this.newest = frame; }
+  /// The last frame is not of the present any more.
+  lost(): void { this.inLive = this.newest; }
   /// Shows an earlier moment, or the newest frames again.
   showPast(frame: Frame | null): void {
     this.past = frame;

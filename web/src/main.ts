@@ -162,13 +162,13 @@ function takeLink(link: Link, sentence: string): void {
   missed = "";
   turnDown.show("", null);
   controls.lost();
+  drawing.lost();
   verdict.lost();
   pageHand.lost();
 }
 
 /// Draws what is about the present, whatever moment is shown.
 function live(frame: Frame, now: number): void {
-  if (document.documentElement.dataset.link !== "open") return; // a last frame, drawn after the link was lost
   const { hello, state } = connection;
   verdict.show({ frame, state, sensation: hello?.sensation ?? null, ratesMissed: missed !== "" }, now);
   transport.frame(frame);
