@@ -85,14 +85,15 @@ void print_heads(std::FILE* out, const std::vector<HeadLevel>& heads) {
 void print_advice(std::FILE* out, const HeadLevel& head) {
   fmt::print(out, "\nRecommended settings, for a head {:g} m from the array\n", head.distance);
   for (const RecommendedLevel& of : recommended_levels(head)) {
-    fmt::print(out,
-               "  {:<6} [safety] head_level = {:.0f}: about {:.0f} dB{}; felt strength {:.0f} dB "
-               "below full output\n         {}\n",
-               of.use, of.cap, of.level,
-               of.protection > 0.0
-                   ? fmt::format(", {:.0f} dB behind hearing protection", of.level - of.protection)
-                   : std::string(),
-               of.cost, of.advice);
+    const std::string at_ear =
+        of.protection > 0.0
+            ? fmt::format(", {:.0f} dB behind hearing protection", of.level - of.protection)
+            : std::string();
+    const std::string cost =
+        of.cost > 0.0 ? fmt::format("felt strength {:.0f} dB below that at full output", of.cost)
+                      : std::string("felt as strongly as at full output");
+    fmt::print(out, "  {:<6} [safety] head_level = {:.0f}: about {:.0f} dB{}; {}\n         {}\n",
+               of.use, of.cap, of.level, at_ear, cost, of.advice);
   }
   fmt::print(out, "\nLevels and their uncertainty: docs/devices/safety.md\n");
 }
@@ -129,6 +130,16 @@ nlohmann::ordered_json levels_json(const PipelineSettings& settings,
                               {"level_db", limit.level},
                               {"scope", limit.scope},
                               {"source", limit.source}});
+  }
+  const double distance = settings.safety.head_distance;
+  for (const RecommendedLevel& of : recommended_levels(head_level(array, distance))) {
+    json["recommended"].push_back({{"use", of.use},
+                                   {"head_level_db", of.cap},
+                                   {"head_distance_m", distance},
+                                   {"likely_db", of.level},
+                                   {"protection_db", of.protection},
+                                   {"felt_strength_lost_db", of.cost},
+                                   {"advice", of.advice}});
   }
   return json;
 }

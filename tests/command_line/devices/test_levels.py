@@ -22,6 +22,9 @@ def test_levels_are_intervals_next_to_caps_and_limits(prostm, tmp_path, array):
         assert row["low_db"] < row["likely_db"] < row["estimate_db"] < row["bound_db"]
     assert result["caps"]["head_level"] == 145
     assert [limit["level_db"] for limit in result["limits"]] == [100, 110, 110, 115]
+    study, demo = result["recommended"]
+    assert [study["use"], demo["use"]] == ["study", "demo"]
+    assert 0 <= study["felt_strength_lost_db"] < demo["felt_strength_lost_db"]
     assert all(limit["source"] and limit["scope"] for limit in result["limits"])
 
 
