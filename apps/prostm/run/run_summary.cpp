@@ -81,11 +81,12 @@ void print_levels(std::FILE* out, const RunSummary& s) {
 void print_output(std::FILE* out, const RunSummary& s) {
   const EmitStats& e = s.emit;
   print_row(out, "samples",
-            fmt::format("{} of all focal points; {:.1f} % at full scale ({:.3g} Pa; stronger "
-                        "pressure feels no stronger), {:.1f} % "
-                        "weakened by the power limit; largest step {:.3f} mm",
-                        e.samples, percent(e.saturated, e.samples), s.full_scale_pressure,
-                        percent(e.limited, e.samples), e.max_focus_step * 1e3));
+            fmt::format(
+                "{} of all focal points; {:.1f} % at full scale ({:.3g} Pa of the target; stronger "
+                "pressure feels no stronger), {:.1f} % "
+                "weakened by the power limit; largest step {:.3f} mm",
+                e.samples, percent(e.saturated, e.samples), s.full_scale_pressure,
+                percent(e.limited, e.samples), e.max_focus_step * 1e3));
   print_row(
       out, "array",
       fmt::format("{}: {} blocks of {:.3g} ms; {} missed (dropouts), {} late (absorbed by the "
