@@ -13,6 +13,25 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "tests/support"))  # shared by the tests of the program and of the module
 
+# a protocol of few short trials, whose smoke is coarse
+SHORT = """
+[training]
+seconds = 0
+[trials]
+repeats = 1
+rest = 0.1
+settle = 0.5
+gate = "off"
+[scene.one-plume]
+question = "One?"
+[scene.four-plumes]
+question = "Four?"
+[method.am.pipeline]
+method = "am"
+[method.am.fluid]
+cells = 32
+"""
+
 
 def pytest_configure(config):
     config.addinivalue_line(

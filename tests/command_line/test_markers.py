@@ -13,7 +13,8 @@ import tty
 
 import pytest
 
-from test_study import SHORT, STUDY
+from conftest import SHORT
+from test_study import STUDY
 
 LONG = SHORT.replace("repeats = 1", "repeats = 2")
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from conftest import wait_for
-from test_study import SHORT, STUDY
+from conftest import SHORT
+from test_study import STUDY
 
 SOURCE = "#include <errno.h>\nint flock(int fd, int how) { (void)fd; (void)how; errno = %s; return -1; }\n"
 

@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from conftest import ROOT, shared_file, wait_for
+from conftest import ROOT, SHORT, shared_file, wait_for
 
 MADE_UP = ROOT / "data" / "made-up-answers.csv"
 SVG = "{http://www.w3.org/2000/svg}"
@@ -152,23 +152,6 @@ def test_a_tidy_table_has_the_same_answers(prostm, refuses, tmp_path):
 
 
 PROTOCOL = ROOT / "data" / "protocols" / "one-plume-or-four.toml"
-SHORT = """
-[training]
-seconds = 0
-[trials]
-repeats = 1
-rest = 0.1
-settle = 0.5
-gate = "off"
-[scene.one-plume]
-question = "One?"
-[scene.four-plumes]
-question = "Four?"
-[method.am.pipeline]
-method = "am"
-[method.am.fluid]
-cells = 32
-"""
 STUDY = ["study", "run", "short.toml", "--view-port", "0", "--participant"]
 
 

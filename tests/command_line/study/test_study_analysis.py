@@ -9,31 +9,10 @@ import time
 
 import pytest
 
-from conftest import ROOT
+from conftest import ROOT, SHORT
 
 MADE_UP = ROOT / "data" / "made-up-answers.csv"
-SHORT = """
-[study]
-participants = 2
-methods = "within"
-[training]
-seconds = 0
-[trials]
-repeats = 1
-rest = 0.1
-settle = 0.5
-gate = "off"
-[scene.one-plume]
-question = "One?"
-[scene.four-plumes]
-question = "Four?"
-[method.am.pipeline]
-method = "am"
-[method.am.fluid]
-cells = 32
-[method.pro-stm.fluid]
-cells = 32
-"""
+WITHIN = '[study]\nparticipants = 2\nmethods = "within"\n' + SHORT + "[method.pro-stm.fluid]\ncells = 32\n"
 
 
 def test_expected_sizes_are_those_of_scipy():
@@ -119,7 +98,7 @@ def test_paired_comparisons_are_ranked(prostm, refuses, tmp_path):
 
 
 def test_a_plan_is_written_before_answers_and_run_after(prostm, refuses, tmp_path):
-    (tmp_path / "short.toml").write_text(SHORT)
+    (tmp_path / "short.toml").write_text(WITHIN)
     planned = prostm("study", "preregister", "short.toml", "-o", "plan.jsonl", "--each-scene", "--equivalence", "0.2",
                      "--note", "PRO-STM is better.").stdout
     text = (tmp_path / "plan.jsonl").read_text()
@@ -139,7 +118,7 @@ def test_a_plan_is_written_before_answers_and_run_after(prostm, refuses, tmp_pat
     assert [of["scene"] for of in found["results"]] == [None, "one-plume", "four-plumes"]
     (tmp_path / "changed.jsonl").write_text(text.replace('"alpha":0.05', '"alpha":0.10'))
     refuses("study", "analyse", *files, "--plan", "changed.jsonl", words=["changed.jsonl, line 3 does not match"])
-    (tmp_path / "other.toml").write_text(SHORT.replace("repeats = 1", "repeats = 2"))
+    (tmp_path / "other.toml").write_text(WITHIN.replace("repeats = 1", "repeats = 2"))
     prostm("study", "preregister", "other.toml", "-o", "other.jsonl")
     refuses("study", "analyse", *files, "--plan", "other.jsonl",
             words=["answers/rehearsal-1.jsonl, line 1", "trials.repeats is 1, and 2 in the plan"])
