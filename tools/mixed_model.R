@@ -18,6 +18,7 @@ if (length(missing) > 0) {
           ": write it by prostm study analyse ANSWERS --tidy ", arguments[1])
   quit(status = 2)
 }
+table <- table[table$correct != "", ]  # trials without an answer are left out
 table$correct <- as.integer(table$correct)
 for (name in c("method", "scene")) table[[name]] <- factor(table[[name]], levels = unique(table[[name]]))
 terms <- Filter(function(name) nlevels(table[[name]]) > 1, c("method", "scene"))

@@ -33,6 +33,7 @@ def read(path):
     for name in NEEDED:
         if name not in table:
             raise ValueError(f"{path} has no column {name}: write it by prostm study analyse ANSWERS --tidy {path}")
+    table = table[table["correct"] != ""].copy()  # trials without an answer are left out
     table["correct"] = table["correct"].astype(int)
     for name in ("method", "scene"):
         table[name] = pd.Categorical(table[name], categories=table[name].unique())
