@@ -179,6 +179,61 @@ TEST(AnswerTable, AcceptsRepeatedTrialNumbersAndFindsCopies) {
   EXPECT_THAT(refusal(header + "1,am,x,1,1,0.5\n1,am,x,1,1,0.5\n"), HasSubstr("trial 1 twice"));
 }
 
+using Cells = std::vector<std::pair<std::string, std::string>>;
+
+// A tidy table has all that a person's table has, and is read as the same answers.
+TEST(AnswerTable, KeepsOtherColumns) {
+  const std::string text =
+      "Age,participant,method,,scene,note,correct,note,Correct Answer\n"
+      "31,1,am,a,x,\" b, \"\"c\"\"\",true,;|,f\n"
+      ",2,am,,x,,no,d,\n";
+  const auto answers = read(text);
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_EQ(answers[0].other, (Cells{{"Age", "31"},
+                                     {"column_4", "a"},
+                                     {"note", " b, \"c\""},
+                                     {"note_2", ";|"},
+                                     {"Correct Answer", "f"}}));
+  EXPECT_EQ(answers[1].other.back().second, "");
+  const std::string tidy = tidy_csv(answers);
+  EXPECT_EQ(tidy.substr(0, tidy.find("\r\n")),
+            "participant,method,scene,correct,Age,column_4,note,note_2,Correct Answer");
+  EXPECT_EQ(read(tidy), answers);
+  // empty cells at line ends, without a name, are no column
+  EXPECT_TRUE(read("participant,method,scene,correct,\n1,am,x,1,\n").front().other.empty());
+}
+
+// A column with one of our names that is not read, or not wholly, gets "_given".
+TEST(AnswerTable, OtherColumnsDoNotTakeOurNames) {
+  const auto other_of = [](const std::string& text, const std::string& columns = {}) {
+    const auto answers = read(text, columns);
+    EXPECT_EQ(read(tidy_csv(answers)), answers) << text;
+    return answers.front().other;
+  };
+  const std::string header = "participant,method,scene,correct";
+  EXPECT_EQ(other_of(header + ",key.corr\n1,am,x,maybe,1\n", "correct=key.corr"),
+            (Cells{{"correct_given", "maybe"}}));
+  EXPECT_EQ(other_of(header + ",question,Answer\n1,am,x,1,Strong?,f\n"),
+            (Cells{{"question_given", "Strong?"}, {"Answer_given", "f"}}));
+  EXPECT_EQ(other_of(header + ",response,response_given\n1,am,x,1,left,z\n1,am,x,0,None,\n"),
+            (Cells{{"response_given_2", "left"}, {"response_given", "z"}}));
+  EXPECT_EQ(other_of(header + ",trial,response_s\n1,am,x,1,1,0.5\n1,am,x,1,1,0.6 s\n"),
+            (Cells{{"trial_given", "1"}, {"response_s_given", "0.5"}}));
+  EXPECT_EQ(other_of(header + ",kind,level\n1,am,x,0,adjusted,1.5\n"),
+            (Cells{{"correct_given", "0"}}));
+  EXPECT_TRUE(other_of(header + ",response,trial,response_s\n1,am,x,1,,1,0.5\n").empty());
+}
+
+TEST(AnswerTable, TablesWithDifferentColumnsAreJoined) {
+  std::vector<Answer> answers = read("participant,method,scene,correct,age,hand\n1,am,x,1,31,l\n");
+  for (const Answer& a : read("hand,participant,method,scene,correct,age\nr,2,am,x,1,\n"))
+    answers.push_back(a);
+  answers.push_back({.participant = "3", .method = "am", .scene = "x", .correct = true});
+  EXPECT_EQ(tidy_csv(answers),
+            "participant,method,scene,correct,age,hand\r\n1,am,x,1,31,l\r\n"
+            "2,am,x,1,,r\r\n3,am,x,1,,\r\n");
+}
+
 TEST(Spelling, KeysAreEqualForNamesThatDifferOnlyInSpelling) {
   using study::spelling_key;
   const std::array<std::array<const char*, 2>, 14> alike = {{{"01", "1"},

@@ -260,6 +260,65 @@ TEST(Scores, AParticipantsFileNeedsItsFirstLineAndCompleteTrials) {
   EXPECT_THAT(refused("c.jsonl"), HasSubstr("has no answer"));
 }
 
+/// A trial of a forced choice, as a session writes it.
+const ResponseLine kForcedChoice = {
+    {"kind", "trial"},
+    {"trial", 1},
+    {"method", "stm"},
+    {"scene", "x"},
+    {"track", 2},
+    {"level", 1.5},
+    {"reference", 1.0},
+    {"interval", 2},
+    {"answer", 1},
+    {"felt", 0},
+    {"correct", 0},
+    {"response_s", 1.25},
+    {"stimulus", "00000001"},
+    {"gate", {{"pass", false}}},
+    {"anyway", true},
+    {"target_mn", 2.5},
+    {"rendered_mn", 2.25},
+    {"played", {{"speed_m_s", 7.0}, {"period_ms", 20.0}, {"changed_paths", 0}}},
+    {"hand_gone_s", 0.0},
+    {"utc", "2026-01-01T00:00:00.000Z"},
+    {"time_s", 12.5}};
+
+TEST(Scores, TidyTablesHaveTheFactsOfEachTrial) {
+  const test::TemporaryFolder folder;
+  const std::vector<std::string> files = {folder.file("1.jsonl")};
+  {
+    ResponseFile file(files[0]);
+    file.append(
+        {{"kind", "begin"},
+         {"format", kResponseFormat},
+         {"participant", "1"},
+         {"protocol", {{"trials", {{"task", "forced-choice"}}}, {"level", {{"against", ""}}}}},
+         {"trials", 2},
+         {"run", {{"rehearsal", false}}}});
+    file.append(kForcedChoice);
+    file.append({{"kind", "correction"}, {"trial", 1}, {"answer", 2}, {"felt", 1}, {"correct", 1}});
+    ResponseLine without_plan = kForcedChoice;
+    without_plan["trial"] = 2;
+    without_plan["played"] = nullptr;
+    file.append(without_plan);
+    file.append({{"kind", "end"}});
+  }
+  std::vector<std::string> notes;
+  const auto answers = read_answers(files, notes);
+  const std::string tidy = tidy_csv(answers);
+  EXPECT_THAT(tidy, testing::StartsWith(
+                        "participant,method,scene,trial,correct,level,response_s,"
+                        "stimulus_checksum,gate,protocol_checksum,answer_given,track,reference,"
+                        "interval,anyway,target_mn,rendered_mn,hand_gone_s,played_speed_m_s,"
+                        "played_period_ms,played_changed_paths,utc,time_s\r\n"
+                        "1,stm,x,1,1,1.5,1.25,00000001,anyway,"));
+  EXPECT_THAT(tidy, HasSubstr(",2,2,1.0,2,1,2.5,2.25,0.0,7.0,20.0,0,2026-01-01T00:00:00.000Z,"
+                              "12.5\r\n1,stm,x,2,0,"));
+  EXPECT_THAT(tidy, HasSubstr(",1,2,1.0,2,1,2.5,2.25,0.0,,,,2026-01-01T00:00:00.000Z,12.5\r\n"));
+  EXPECT_EQ(answers_from_csv(tidy, "tidy.csv"), answers);
+}
+
 // Two labs both start with participant 1.
 TEST(Scores, TwoPeopleWithOneNumberAreSeparatedOnRequest) {
   const test::TemporaryFolder folder;

@@ -3,6 +3,8 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "prostm/study/task/answer_kind.hpp"
 
@@ -31,6 +33,9 @@ struct Answer {
   std::string stimulus = {};              ///< checksum of its settings, if known
   std::string gate = {};  ///< of the stimulus: "pass", "fail", "anyway"; empty if not evaluated
   RunFacts run = {};
+  /// All else in the file about the trial: names of columns, and their cells. The analysis does not
+  /// use it. No name is that of a column that answers_from_csv() reads.
+  std::vector<std::pair<std::string, std::string>> other = {};
 
   bool operator==(const Answer&) const = default;
 };

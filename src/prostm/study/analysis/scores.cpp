@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "prostm/core/file/file.hpp"
@@ -124,7 +125,11 @@ std::vector<TidyColumn> tidy_columns() {
       {Column::Question, [](const Answer& a) { return a.question; }},
       {Column::Answer,
        [=](const Answer& a) { return bit(a.answered && !a.question.empty(), a.yes); }},
-      {Column::Correct, [=](const Answer& a) { return bit(a.answered, a.correct); }, true},
+      {Column::Correct,
+       [=](const Answer& a) {
+         return bit(a.answered && a.kind != AnswerKind::Adjusted, a.correct);
+       },
+       true},
       {Column::Level, [=](const Answer& a) { return number(a.level); }},
       {Column::Kind,
        [](const Answer& a) {
@@ -143,12 +148,34 @@ std::vector<TidyColumn> tidy_columns() {
 
 std::string csv_cell(const std::string& value) {
   const auto needs_quotes = [](char c) {
-    return c == ',' || c == '"' || static_cast<unsigned char>(c) < 0x20;
+    // ";" and "|", so that no other separator is taken for that of the table
+    return c == ',' || c == '"' || c == ';' || c == '|' || static_cast<unsigned char>(c) < 0x20;
   };
   if (std::none_of(value.begin(), value.end(), needs_quotes)) return value;
   std::string out = "\"";
   for (const char c : value) out += c == '"' ? std::string("\"\"") : std::string(1, c);
   return out + '"';
+}
+
+/// Names of all other columns, in order of first appearance.
+std::vector<std::string> other_names(std::span<const Answer> answers) {
+  std::vector<std::string> names;
+  std::set<std::string> known;
+  for (const Answer& a : answers) {
+    for (const auto& [name, cell] : a.other) {
+      if (known.insert(name).second) names.push_back(name);
+    }
+  }
+  return names;
+}
+
+std::string csv_line(const std::vector<std::string>& cells) {
+  std::string out;
+  for (const std::string& cell : cells) {
+    out += &cell == &cells.front() ? "" : ",";
+    out += csv_cell(cell);
+  }
+  return out + "\r\n";
 }
 
 }  // namespace
@@ -159,16 +186,21 @@ std::string tidy_csv(std::span<const Answer> answers) {
     const auto is_empty = [&](const Answer& a) { return of.cell(a).empty(); };
     return !of.always && std::all_of(answers.begin(), answers.end(), is_empty);
   });
-  std::string out;
-  const auto add_row = [&](const auto& value_of) {
-    for (const TidyColumn& column : columns) {
-      out += &column == &columns.front() ? "" : ",";
-      out += csv_cell(value_of(column));
+  const std::vector<std::string> others = other_names(answers);
+  std::vector<std::string> cells;
+  for (const TidyColumn& of : columns) cells.emplace_back(name_of(of.column));
+  cells.insert(cells.end(), others.begin(), others.end());
+  std::string out = csv_line(cells);
+  for (const Answer& a : answers) {
+    cells.clear();
+    for (const TidyColumn& of : columns) cells.push_back(of.cell(a));
+    const std::map<std::string, std::string> other(a.other.begin(), a.other.end());
+    for (const std::string& name : others) {
+      const auto found = other.find(name);
+      cells.push_back(found == other.end() ? std::string() : found->second);
     }
-    out += "\r\n";
-  };
-  add_row([](const TidyColumn& column) { return std::string(name_of(column.column)); });
-  for (const Answer& a : answers) add_row([&](const TidyColumn& column) { return column.cell(a); });
+    out += csv_line(cells);
+  }
   return out;
 }
 

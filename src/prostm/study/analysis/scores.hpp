@@ -17,7 +17,7 @@ namespace prostm {
 /// columns question (a scene) and answer, they must agree with correct. If there is a column level,
 /// every row needs a number; if kind, all rows must have the same AnswerKind. A row whose correct,
 /// answer or response is missing is a trial without an answer; one without method and scene is not
-/// a trial. Other columns are ignored (docs/study/study-files.md).
+/// a trial. Other columns are kept as Answer::other (docs/study/study-files.md).
 /// @param columns "correct=key_resp.corr,method:=am": the table's own column names, and values for
 /// all rows. @param notes if given, receives sentences about skipped rows and merged names.
 /// @throws InputError with line and column: a missing or invalid column or value, a truncated or
@@ -48,8 +48,9 @@ std::vector<Answer> read_answers(std::span<const std::string> paths,
                                  const ReadingSettings& settings = {}, Tasks tasks = study_tasks());
 
 /// Returns answers as CSV (RFC 4180, UTF-8) for other programs, one row per trial, with those
-/// columns of docs/study/study-files.md that are known for any answer. Cells of a trial without an
-/// answer are empty. answers_from_csv() restores the same answers.
+/// columns of docs/study/study-files.md that are known for any answer, and then those of
+/// Answer::other, in order of first appearance. Cells of a trial without an answer are empty.
+/// answers_from_csv() restores the same answers.
 std::string tidy_csv(std::span<const Answer> answers);
 
 }  // namespace prostm

@@ -97,11 +97,14 @@ class TableReader {
   void check_trial(const Row& row, const Answer& answer);
   void read_facts(const Row& row, Answer& out);
   std::optional<Answer> answer(const Row& row);
+  bool keeps(Column column) const;
+  void keep_others(const std::vector<std::size_t>& rows, std::vector<Answer>& out);
   void write_notes();
 
   const std::string& file_;
   CsvReader csv_;
   bool header_quoted_ = false, adjusted_ = false;  // adjusted_: the kind is Adjusted
+  bool odd_times_ = false;                         // a response time is not a number
   NumberColumn levels_, times_;
   std::vector<std::string>& notes_;
   ColumnPlaces places_;
@@ -268,8 +271,11 @@ void TableReader::check_trial(const Row& row, const Answer& answer) {
 
 void TableReader::read_facts(const Row& row, Answer& out) {
   std::string ignored;
-  if (has(Column::ResponseTime))
-    out.response_s = times_.read(text(Column::ResponseTime, row), ignored);
+  if (has(Column::ResponseTime)) {
+    const std::string time = text(Column::ResponseTime, row);
+    out.response_s = times_.read(time, ignored);
+    odd_times_ = odd_times_ || (!out.response_s && !is_missing(time));
+  }
   out.gate = text(Column::Gate, row);
   out.stimulus = text(Column::Stimulus, row);
   out.run = {text(Column::Protocol, row), text(Column::Version, row), text(Column::Device, row),
@@ -299,6 +305,29 @@ std::optional<Answer> TableReader::answer(const Row& row) {
   return out;
 }
 
+/// Whether the answers have all that the cells of a column say.
+bool TableReader::keeps(Column column) const {
+  if (column == Column::Response || (column == Column::Correct && adjusted_)) return false;
+  if (column == Column::Trial && !repeating_.empty()) return false;
+  return has(column) && !(column == Column::ResponseTime && odd_times_);
+}
+
+/// Adds the other columns. @param rows places of the answers' rows.
+void TableReader::keep_others(const std::vector<std::size_t>& rows, std::vector<Answer>& out) {
+  std::vector<Column> kept;
+  for (std::size_t i = 0; i < kColumns; ++i) {
+    if (keeps(static_cast<Column>(i))) kept.push_back(static_cast<Column>(i));
+  }
+  for (const OtherColumn& of : places_.others(kept)) {
+    const auto is_blank = [&](std::size_t row) {
+      return trimmed(rows_[row].cells[of.place]).empty();
+    };
+    if (of.renamed && std::all_of(rows.begin(), rows.end(), is_blank)) continue;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      out[i].other.emplace_back(of.name, std::move(rows_[rows[i]].cells[of.place]));
+  }
+}
+
 void TableReader::write_notes() {
   for (const auto& [column, trims] : trims_) trims.note(name_of(column), file_, notes_);
   if (!no_trials_.empty()) {
@@ -326,8 +355,12 @@ std::vector<Answer> TableReader::read() {
   if (!adjusted_) places_.require({Column::Correct}, csv_);
   choose_columns();
   std::vector<Answer> out;
-  for (const Row& row : rows_) {
-    if (auto of_row = answer(row)) out.push_back(std::move(*of_row));
+  std::vector<std::size_t> of_answers;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    auto of_row = answer(rows_[i]);
+    if (!of_row) continue;
+    out.push_back(std::move(*of_row));
+    of_answers.push_back(i);
   }
   const auto is_answered = [](const Answer& a) { return a.answered; };
   if (std::none_of(out.begin(), out.end(), is_answered))
@@ -336,6 +369,7 @@ std::vector<Answer> TableReader::read() {
     a.kind = all_of_.value_or(AnswerKind::Right);
     if (repeating_.contains(a.participant)) a.trial.clear();
   }
+  keep_others(of_answers, out);
   write_notes();
   return out;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "prostm/core/input_error.hpp"
@@ -129,6 +130,32 @@ void ColumnPlaces::require(const std::vector<Column>& needed, const CsvReader& c
       fmt::format("the header has no column \"{}\": participant, method, scene and correct are "
                   "needed, but it has {}; name them with --columns {}",
                   name_of(missing.front()), columns, example(missing)));
+}
+
+std::vector<OtherColumn> ColumnPlaces::others(const std::vector<Column>& kept) const {
+  std::set<std::size_t> without;
+  for (const Column column : kept) {
+    if (const auto at = place(column)) without.insert(*at);
+  }
+  std::vector<OtherColumn> out;
+  for (std::size_t i = 0; i < header_.size(); ++i) {
+    if (without.contains(i)) continue;
+    const bool is_ours = std::any_of(
+        kNames<Column>.begin(), kNames<Column>.end(),
+        [&](std::string_view ours) { return spelling_key(ours) == spelling_key(header_[i]); });
+    const std::string name = header_[i].empty() ? fmt::format("column_{}", i + 1)
+                                                : header_[i] + (is_ours ? "_given" : "");
+    out.push_back({i, name, is_ours || header_[i].empty()});
+  }
+  std::set<std::string> taken;
+  for (const bool renamed : {false, true}) {  // names of the table before ours
+    for (OtherColumn& of : out) {
+      if (of.renamed != renamed) continue;
+      const std::string name = of.name;
+      for (int n = 2; !taken.insert(of.name).second; ++n) of.name = fmt::format("{}_{}", name, n);
+    }
+  }
+  return out;
 }
 
 std::string ColumnPlaces::example(const std::vector<Column>& missing) const {

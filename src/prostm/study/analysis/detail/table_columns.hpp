@@ -62,6 +62,13 @@ struct ColumnMap {
 /// @throws InputError: a name that is unknown or given twice, no "=".
 ColumnMap column_map(std::string_view text);
 
+/// A column of a table that has no meaning for the analysis.
+struct OtherColumn {
+  std::size_t place = 0;
+  std::string name;      ///< unique, and not one of ours
+  bool renamed = false;  ///< its name was one of ours, or empty
+};
+
 /// The positions of the columns in a table.
 class ColumnPlaces {
  public:
@@ -81,6 +88,9 @@ class ColumnPlaces {
   /// columns and suggests a value of --columns.
   void require(const std::vector<Column>& needed, const CsvReader& csv) const;
   std::size_t size() const { return header_.size(); }
+  /// Returns the columns besides those in `kept`. A name that is one of ours, regardless of
+  /// spelling, gets "_given", an empty one is "column_3", and a repeated one gets "_2", "_3", ….
+  std::vector<OtherColumn> others(const std::vector<Column>& kept) const;
 
  private:
   std::string example(const std::vector<Column>& missing) const;
