@@ -137,6 +137,7 @@ struct StudyRunOptionsGiven {
   bool resume = false;
   bool take_over = false;            ///< replace a lock file of another machine
   std::optional<int> rehearse;       ///< trials, 0: all; nothing: people answer
+  bool as_fast_as_possible = false;  ///< rehearse with a simulated clock, without pages
   std::vector<std::string> markers;  ///< addresses that receive markers
 };
 

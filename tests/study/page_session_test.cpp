@@ -173,7 +173,7 @@ TEST(PageSession, TrainsOnlyWhileThePageMeetsItsRequirements) {
   EXPECT_FALSE(s.session.wanted().sound);
   EXPECT_EQ(s.session.training_left(), left);
   EXPECT_THAT(s.session.page_problem(), HasSubstr("draw"));
-  s.act(Do::Next);
+  s.act(Do::EndTraining);
   EXPECT_EQ(s.lines("training").front()["page_missing"], (ResponseLine{"picture"}));
 }
 

@@ -44,7 +44,7 @@ struct Sitting {
   std::string answer(bool yes) { return session.take({.what = Do::Answer, .yes = yes}, sight); }
   /// Advances from any phase to the presentation of the next trial.
   bool present() {
-    if (session.phase() == StudyPhase::Training) act(Do::Next);
+    if (session.phase() == StudyPhase::Training) act(Do::EndTraining);
     if (session.phase() != StudyPhase::Settling) act(Do::Next);
     return until(StudyPhase::Presenting);
   }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "prostm/core/units.hpp"
@@ -92,7 +93,17 @@ TEST(PageMessage, Study) {
   EXPECT_EQ(read<StudyAct>(R"({"type":"study","do":"explore","scene":3})").scene, 3);
   const auto about = read<StudyAct>(R"({"type":"study","do":"about","about":{"hand":"left"}})");
   EXPECT_EQ(about.about, (nlohmann::ordered_json{{"hand", "left"}}));
-  EXPECT_EQ(read<StudyAct>(R"({"type":"study","do":"withdraw"})").what, Do::Withdraw);
+  // every act by its name
+  for (std::size_t i = 0; i < kNames<Do>.size(); ++i) {
+    const nlohmann::json message = {{"type", "study"},
+                                    {"do", kNames<Do>[i]},
+                                    {"yes", true},
+                                    {"to", "more"},
+                                    {"coarse", false},
+                                    {"scene", 0},
+                                    {"about", nlohmann::json::object()}};
+    EXPECT_EQ(read<StudyAct>(message.dump()).what, static_cast<Do>(i)) << kNames<Do>[i];
+  }
 }
 
 TEST(PageMessage, ReportOfTheParticipantsPage) {

@@ -223,7 +223,7 @@ TEST(StudyView, ShowsTheSimulationInTrainingButNotTheMethod) {
     EXPECT_LE(test::section_count(frame, 6), 0) << "paths";
   }
   EXPECT_EQ(test::section_count(frame, 3), 1) << "hands";
-  experimenter.say(R"({"type":"study","do":"next"})");
+  experimenter.say(R"({"type":"study","do":"end-training"})");
   at_phase(participant, "ready");
   participant.catch_up();
   experimenter.say(R"({"type":"study","do":"withdraw"})");

@@ -4,6 +4,7 @@
 #include "common.hpp"
 #include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/study/extra/extra_answers.hpp"
 #include "prostm/study/session/roster.hpp"
 #include "study/study.hpp"
 #include "study/study_plan.hpp"
@@ -13,9 +14,9 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
-/// Checks a participant's file. @return the participant if the session was not finished.
-std::optional<std::string> check_file(const std::string& path, const StudyPlan& plan,
-                                      const std::string& plan_file) {
+/// Checks a participant's file, and returns what the rules of exclusion need.
+SessionFacts check_file(const std::string& path, const StudyPlan& plan,
+                        const std::string& plan_file) {
   if (!path.ends_with(".jsonl")) {
     throw InputError(path +
                      ": --plan needs participants' files (.jsonl), since a table does not contain "
@@ -25,14 +26,16 @@ std::optional<std::string> check_file(const std::string& path, const StudyPlan& 
   const std::optional<RosterEntry> entry = roster_entry(text, path);
   if (!entry) throw InputError(path + ", line 1 is not the first line of a participant's file");
   require_planned(entry->protocol, path + ", line 1", plan, plan_file);
-  for (const ResponseLine& line : responses_from_text(text, path)) {
+  const std::vector<ResponseLine> lines = responses_from_text(text, path);
+  for (const ResponseLine& line : lines) {
     const std::string utc = line.value("utc", "");
     if (utc.empty() || utc >= plan.created_utc) continue;
     throw InputError(fmt::format("{} was begun on {}, before {} was written on {}", path, utc,
                                  plan_file, plan.created_utc));
   }
-  if (entry->attendance == Attendance::Complete) return std::nullopt;
-  return entry->participant;
+  const ExtraAnswers extra = extra_answers(lines);
+  return {entry->participant, entry->attendance == Attendance::Complete,
+          extra.failed_practice.empty(), extra.wrong_share()};
 }
 
 std::string chance_or(const std::string& method) {
@@ -117,12 +120,9 @@ Confirmed confirm(const std::string& plan_file, const std::vector<std::string>& 
   Confirmed out;
   out.file = plan_file;
   out.plan = plan_from_text(read_file(plan_file, kMaxBytes), plan_file);
-  std::vector<std::string> incomplete;
-  for (const std::string& path : files) {
-    if (auto participant = check_file(path, out.plan, plan_file))
-      incomplete.push_back(std::move(*participant));
-  }
-  out.results = run_plan(out.plan, answers, incomplete, seed);
+  std::vector<SessionFacts> sessions;
+  for (const std::string& path : files) sessions.push_back(check_file(path, out.plan, plan_file));
+  out.results = run_plan(out.plan, answers, sessions, seed);
   return out;
 }
 

@@ -34,6 +34,8 @@ void validate(const StudyPlan& plan) {
   require_between("participants", plan.participants, 1, 9999);
   if (plan.equivalence) require_between("equivalence", *plan.equivalence, 1e-6, 1e6);
   const Exclusions& rules = plan.exclusions;
+  if (rules.wrong_checks_above)
+    require_between("exclude-wrong-checks", *rules.wrong_checks_above, 0.0, 1.0);
   if (rules.response_below) require_between("exclude-below", *rules.response_below, 0.0, 3600.0);
   if (rules.response_above) require_between("exclude-above", *rules.response_above, 0.0, 3600.0);
 }

@@ -105,12 +105,34 @@ void print_method(std::FILE* out, const char* what, const Json& method, const Js
   if (method.contains("reference")) print_level("reference", method["reference"]);
 }
 
+/// Prints practice, catch and attention trials, and a fixed duration; nothing without them.
+void print_extra_trials(std::FILE* out, const Json& protocol) {
+  if (protocol.contains("practice")) {
+    const Json& practice = protocol["practice"];
+    const double right = practice["right"].get<double>();
+    fmt::print(out, "practice: {}{} trials before the trials of each method{}\n",
+               right > 0.0 ? "at most " : "", practice["trials"].get<int>(),
+               right > 0.0 ? fmt::format(", until {:.0f} % of the last {} answers are right",
+                                         100.0 * right, practice["window"].get<int>())
+                           : std::string());
+  }
+  const Json& trials = protocol["trials"];
+  for (const auto& [key, name] : {std::pair("catch_every", "catch trial, without a stimulus"),
+                                  {"attention_every", "attention trial"}}) {
+    if (trials.contains(key))
+      fmt::print(out, "one {}, in every {} trials\n", name, trials[key].get<int>());
+  }
+  if (trials.contains("fixed_duration"))
+    fmt::print(out, "answers are taken after the stimulus, whose duration is fixed\n");
+}
+
 void print_presented(std::FILE* out, const Json& json) {
   fmt::print(out, "{}, {} participants, each with {}; {}{} trials; played by {}\n",
              json["task"].get<std::string>(), json["participants"].get<int>(),
              json["methods_of"] == "within" ? "all methods" : "one method",
              json["trials_may_be_fewer"].get<bool>() ? "at most " : "",
              json["trials"].get<std::size_t>(), json["device"].get<std::string>());
+  print_extra_trials(out, json["protocol"]);
   for (const Json& scene : json["scenes"]) {
     fmt::print(out, "scene {}: \"{}\"\n", scene["name"].get<std::string>(),
                scene["question"].get<std::string>());

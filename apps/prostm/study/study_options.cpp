@@ -34,6 +34,10 @@ void add_study_run(Command study, Work& work) {
   command.add_option("--rehearse", o->rehearse,
                      "rehearse without a person: answer so many trials at random (0: all); the "
                      "file's name begins with rehearsal");
+  command.add_flag(
+      "--as-fast-as-possible", o->as_fast_as_possible,
+      "with --rehearse: a simulated clock, without pages; the device must not keep its "
+      "own time");
   command
       .add_option("--markers", o->markers,
                   "send a marker when each stimulus begins and ends: udp://HOST:PORT or "
@@ -166,6 +170,13 @@ void add_exclusions(Command command, Exclusions& rules) {
                    "leave out participants who do not finish their session");
   command.add_flag("--exclude-overridden", rules.overridden_gate,
                    "leave out trials that are presented although the gate does not pass");
+  command.add_flag("--exclude-failed-practice", rules.failed_practice,
+                   "leave out participants who do not reach the criterion of the practice");
+  command
+      .add_option("--exclude-wrong-checks", rules.wrong_checks_above,
+                  "leave out participants with a larger share of wrong answers to catch and "
+                  "attention trials")
+      .type_name("SHARE");
   command
       .add_option("--exclude-below", rules.response_below,
                   "leave out trials with a response time below this")

@@ -4,7 +4,10 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 #include "prostm/core/units.hpp"
 
@@ -48,15 +51,19 @@ double number(const Json& json, const char* name, double low, double high) {
 }
 
 /// The enum value of a member, whose text is one of `names`.
-template <class Enum, std::size_t N>
-Enum choice(const Json& json, const char* name, const char* const (&names)[N]) {
+template <class Enum>
+Enum choice(const Json& json, const char* name, std::span<const std::string_view> names) {
   const std::string value = text(json, name);
   std::string all;
-  for (std::size_t i = 0; i < N; ++i) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
     if (value == names[i]) return static_cast<Enum>(i);
-    all += (i == 0 ? "" : i + 1 == N ? " or " : ", ") + std::string(names[i]);
+    all += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + std::string(names[i]);
   }
   throw Wrong(fmt::format("\"{}\" must be {}", name, all));
+}
+template <class Enum, std::size_t N>
+Enum choice(const Json& json, const char* name, const std::string_view (&names)[N]) {
+  return choice<Enum>(json, name, std::span(names));
 }
 
 SetMessage read_set(const Json& json) {
@@ -136,9 +143,7 @@ StudyAct read_study(const Json& json) {
   constexpr double kMostScenes = 1000, kMostIntervals = 9;
   enum class Way { Less, More };
   StudyAct act;
-  act.what = choice<StudyAct::Do>(json, "do",
-                                  {"next", "anyway", "answer", "correct", "pause", "consent",
-                                   "about", "explore", "withdraw", "tune", "accept"});
+  act.what = choice<StudyAct::Do>(json, "do", std::span(kNames<StudyAct::Do>));
   if (act.what == StudyAct::Do::Answer && json.contains("interval")) {
     const double interval = number(json, "interval", 1.0, kMostIntervals);
     if (interval != std::floor(interval)) throw Wrong("\"interval\" must be a whole number");

@@ -9,6 +9,7 @@
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/pipeline/smoke/smoke_world.hpp"
+#include "prostm/study/live/presented.hpp"
 #include "prostm/study/task/task.hpp"
 #include "prostm/viewer/detail/state_json.hpp"
 
@@ -77,22 +78,6 @@ bool is_allowed(Room room, const StudyAct& act, AnswersFrom answers) {
     return answers == AnswersFrom::Participant;
   return act.what == Do::Consent || act.what == Do::About || act.what == Do::Explore ||
          act.what == Do::Withdraw;
-}
-
-/// Emission of a plan.
-std::optional<StudyPlayed> played_of(const PlanSnapshot& plan) {
-  if (!plan.planned || !plan.settings) return std::nullopt;
-  StudyPlayed out;
-  if (!plan.plan.foci.empty()) {
-    out.period = am_period(plan.settings->emit, plan.emission_rate) / plan.emission_rate;
-    return out;
-  }
-  for (const PlayedPath& path : plan.played.paths) {
-    out.speed += path.speed / static_cast<double>(plan.played.paths.size());
-    out.period = std::max(out.period, path.period);
-  }
-  out.changed = plan.played.changed_paths();
-  return out;
 }
 
 /// Whether a plan was made with these settings.
@@ -192,16 +177,9 @@ void StudyView::present(const StudyWanted& wanted) {
   let_sound(wanted.sound);
   if (session_.closed()) closed_.store(true, std::memory_order_relaxed);
   if (is_asked(wanted)) return;
-  const Protocol& protocol = session_.protocol();
   auto settings = std::make_shared<LiveSettings>(link_.settings);
-  settings->pipeline = wanted.standard
-                           ? protocol.standard->settings
-                           : protocol.methods[static_cast<std::size_t>(wanted.method)].settings;
-  if (wanted.level) set_level(settings->pipeline, protocol.level.setting, *wanted.level);
+  settings->pipeline = settings_for(session_.protocol(), wanted);
   settings->pipeline.plan.widths = link_.settings.pipeline.plan.widths;
-  settings->pipeline.scene = wanted.scene < 0
-                                 ? std::string("still-air")
-                                 : protocol.scenes[static_cast<std::size_t>(wanted.scene)].name;
   settings->version = settings_ ? settings_->version + 1 : 1;
   LiveCommand command{LiveCommand::Kind::Configure};
   command.settings = settings;
@@ -259,12 +237,22 @@ Json StudyView::both(const char* room) const {
                {"interval", session_.interval()},
                {"takes_answer", session_.takes_answer()},
                {"training_left_s", std::ceil(session_.training_left())},
+               {"practice", session_.practice_trial()},
                {"explored", session_.explored()},
                {"scenes", Json::array()},
                {"answers", name_of(p.trials.answers)},
                {"hand", frame_.hand_count > 0}};
   for (const StudyScene& scene : p.scenes) json["scenes"].push_back(scene.name);
   return json;
+}
+
+/// The reason for the wait, without what would reveal the stimulus.
+std::string StudyView::waits_without_stimulus() const {
+  const auto& gate = session_.gate();
+  const bool is_of_field = gate && !gate->pass && !is_of_hand(gate->finding.problem);
+  if (session_.waits_for().empty() || !is_of_field) return session_.waits_for();
+  return "The smoke on the hand is not yet as the scene intends. Hold the hand flat, still and "
+         "over the middle of the array.";
 }
 
 Json StudyView::experimenter() const {
@@ -278,19 +266,17 @@ Json StudyView::experimenter() const {
   json["needs"] = session_.page_problem();
   json["bound"] = session_.at_bound();
   json["strengths"] = session_.strengths();
+  json["practice_failed"] = session_.practice_failed();
   json["problem"] = session_.problem().empty() ? problem_ : session_.problem();
   json["last"] = nullptr;
   if (const auto last = session_.last_answer()) json["last"] = *last == truth_of(*p.trials.task);
   json["question"] = nullptr;
   json["condition"] = nullptr;
-  const auto& gate = session_.gate();
-  if (p.study.blind && gate && !gate->pass && !is_of_hand(gate->finding.problem) &&
-      !session_.waits_for().empty())
-    json["waits_for"] = "The pressure on the hand is not the stimulus yet.";
+  if (p.study.blind) json["waits_for"] = waits_without_stimulus();
   if (session_.course().is_done()) return json;
   const Trial& trial = session_.trial();
   if (phase == StudyPhase::Settling || phase == StudyPhase::Presenting)
-    json["question"] = p.scenes[static_cast<std::size_t>(trial.question)].question;
+    json["question"] = session_.question();
   if (!p.study.blind) {
     json["condition"] = {{"method", p.methods[static_cast<std::size_t>(trial.method)].name},
                          {"scene", p.scenes[static_cast<std::size_t>(trial.scene)].name}};
@@ -305,18 +291,16 @@ Json StudyView::participant() const {
   Json json = both("participant");
   json["consent"] = p.study.consent;
   json["noise"] = p.trials.noise;
-  json["waits_for"] = "";
+  json["waits_for"] = phase == StudyPhase::Settling ? waits_without_stimulus() : "";
   json["feedback"] = nullptr;
   if (session_.feedback()) json["feedback"] = *session_.feedback();
   json["question"] = nullptr;
-  const auto& gate = session_.gate();
-  if (phase == StudyPhase::Settling && gate && is_of_hand(gate->finding.problem))
-    json["waits_for"] = session_.waits_for();
   if (phase == StudyPhase::Presenting) {
     const StudyScene& asked = p.scenes[static_cast<std::size_t>(session_.trial().question)];
-    const bool pictured = p.trials.task->traits().pictured;
+    const bool is_check = session_.extra() && session_.extra()->kind == ExtraKind::Attention;
+    const bool pictured = p.trials.task->traits().pictured && !is_check;
     json["question"] = {
-        {"text", asked.question},
+        {"text", session_.question()},
         {"jets_mm", pictured ? jets_json(asked.name, p.methods.front().settings) : Json::array()}};
   }
   return json;

@@ -57,6 +57,7 @@ class StudyView : public ViewSource {
   void let_sound(bool sound);
   std::string act(Room room, const StudyAct& act);
   nlohmann::ordered_json both(const char* room) const;
+  std::string waits_without_stimulus() const;
   nlohmann::ordered_json experimenter() const;
   nlohmann::ordered_json participant() const;
 

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <sstream>
+
 #include "prostm/study/plan/planned_tests.hpp"
 #include "prostm/study/plan/sha256.hpp"
 #include "support/input_errors.hpp"
@@ -33,7 +35,7 @@ StudyPlan plan_of(const std::string& methods) {
   plan.protocols = {{"p.toml", protocol_with(methods)}};
   plan.participants = 12;
   plan.equivalence = 0.1;
-  plan.exclusions = {true, true, 0.2, std::nullopt};
+  plan.exclusions = {true, true, true, 0.25, 0.2, std::nullopt};
   plan.notes = {"PRO-STM is recognised more often."};
   plan.comparisons = {{"", "am", "pro-stm"}, {"x", "am", ""}};
   return plan;
@@ -45,6 +47,8 @@ TEST(StudyPlan, IsReadAsItWasWritten) {
   EXPECT_EQ(plan_text(read), text);
   EXPECT_EQ(read.sha256, sha256(text));
   EXPECT_EQ(read.participants, 12);
+  EXPECT_TRUE(read.exclusions.failed_practice);
+  EXPECT_EQ(read.exclusions.wrong_checks_above, 0.25);
   EXPECT_EQ(read.exclusions.response_below, 0.2);
   EXPECT_FALSE(read.exclusions.response_above);
   EXPECT_EQ(read.comparisons.at(1).second, "");
@@ -133,9 +137,10 @@ TEST(PlannedTests, RunInOrderWithTheirCorrection) {
 TEST(PlannedTests, FollowTheExclusionsOfThePlan) {
   const test::WithoutTraps in_boost;
   StudyPlan plan = plan_of("within");
-  plan.exclusions = {true, true, 1.0, 8.0};  // of ten trials, two by time and one by the gate
-  const std::vector<std::string> incomplete = {"2"};
-  const ConfirmatoryResults found = run_plan(plan, within_answers(), incomplete, 1);
+  // of ten trials, two are left out by time and one by the gate
+  plan.exclusions = {true, true, false, std::nullopt, 1.0, 8.0};
+  const std::vector<SessionFacts> sessions = {{"2", false}, {"3", true, false, 1.0}};
+  const ConfirmatoryResults found = run_plan(plan, within_answers(), sessions, 1);
   EXPECT_EQ(found.participants, 5);
   EXPECT_EQ(found.results[0].first.participants, 5);
   EXPECT_NEAR(*found.results[0].first.mean, (3 + 4 + 2 + 4 + 6) / 5.0 / 7.0, 1e-12);
@@ -144,8 +149,42 @@ TEST(PlannedTests, FollowTheExclusionsOfThePlan) {
   EXPECT_EQ(found.left_out[1], "Trials left out because the gate did not pass: 10.");
   EXPECT_EQ(found.left_out[2], "Trials left out by response time: 20.");
   plan.exclusions.response_below = 1000.0;
-  EXPECT_THAT(test::input_error([&] { run_plan(plan, within_answers(), incomplete, 1); }),
+  EXPECT_THAT(test::input_error([&] { run_plan(plan, within_answers(), sessions, 1); }),
               HasSubstr("leave no answer"));
+}
+
+TEST(PlannedTests, ExcludePeopleByPracticeAndChecks) {
+  const test::WithoutTraps in_boost;
+  StudyPlan plan = plan_of("within");
+  const std::vector<SessionFacts> sessions = {
+      {"1", true, false, 0.0}, {"2", true, true, 0.5}, {"3", true, true, 0.25}, {"4", false}};
+  plan.exclusions = {};
+  EXPECT_EQ(run_plan(plan, within_answers(), sessions, 1).participants, 6);
+  plan.exclusions.failed_practice = true;
+  plan.exclusions.wrong_checks_above = 0.25;
+  const ConfirmatoryResults found = run_plan(plan, within_answers(), sessions, 1);
+  EXPECT_EQ(found.participants, 4);
+  EXPECT_THAT(
+      found.left_out,
+      testing::ElementsAre("More than 25 % of catch and attention trials wrong, left out: 2.",
+                           "Practice without its criterion, left out: 1."));
+}
+
+// A plan of a version without these rules.
+TEST(StudyPlan, ReadsPlansWithoutTheNewerExclusions) {
+  std::string older;
+  std::istringstream lines(plan_text(plan_of("within")));
+  for (std::string line; std::getline(lines, line);) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::parse(line);
+    for (const char* key : {"check", "failed_practice", "wrong_checks_above"}) json.erase(key);
+    if (json["kind"] == "end") json["sha256"] = sha256(older);
+    const std::string body = json.dump().substr(0, json.dump().size() - 1);
+    older += body + ",\"check\":\"" + sha256(older + body).substr(0, 16) + "\"}\n";
+  }
+  const StudyPlan read = plan_from_text(older, "plan.jsonl");
+  EXPECT_TRUE(read.exclusions.overridden_gate);
+  EXPECT_FALSE(read.exclusions.failed_practice);
+  EXPECT_FALSE(read.exclusions.wrong_checks_above);
 }
 
 TEST(PlannedTests, OfGroupsAreWelchs) {

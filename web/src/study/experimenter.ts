@@ -19,16 +19,18 @@ const kTitles: Record<Phase, string> = {
   withdrawn: "The participant has left",
 };
 const kNext: Partial<Record<Phase, string>> = {
-  training: "End the training", ready: "Begin the trials", break: "Go on", paused: "Go on", done: "Close", withdrawn: "Close",
+  training: "End the training…", ready: "Begin the trials", break: "Go on", paused: "Go on", done: "Close", withdrawn: "Close",
 };
 
 const kAnswers = [["yes", "no"], ["the second", "the first"]];
 
+const ending = find<HTMLDialogElement>("ending");
 const page = new StudyPage<Experimenter>("/live", "experimenter", (study) => {
   const { phase } = study;
   setText(find("participant"), `Participant ${study.participant}`);
   find("blind").hidden = !study.blind;
-  setText(find("phase"), kTitles[phase]);
+  const practises = phase === "ready" && study.practice > 0;
+  setText(find("phase"), practises ? "Ready for the practice" : kTitles[phase]);
   setText(find("question"), study.question ?? "");
   find("asked").hidden = study.question === null;
   const c = study.condition;
@@ -43,7 +45,11 @@ const page = new StudyPage<Experimenter>("/live", "experimenter", (study) => {
   setText(find("strengths"), study.strengths);
   const next = kNext[phase];
   find("next").hidden = next === undefined;
-  setText(find("next-word"), next ?? "");
+  setText(find("next-word"), practises ? "Begin the practice" : next ?? "");
+  if (phase !== "training") ending.close();
+  setText(find("ending-words"), `${minutes(study.training_left_s)} of the training is left.`);
+  find("practise").hidden = phase !== "ready" || study.practice_failed === "";
+  setText(find("practice-failed"), study.practice_failed);
   showTask(study, phase === "presenting");
   const forced = study.controls.form === "interval";
   setText(find("first-key"), forced ? "1" : "Y");
@@ -59,7 +65,9 @@ const page = new StudyPage<Experimenter>("/live", "experimenter", (study) => {
 });
 
 const next = () => {
-  if (page.study !== null && kNext[page.study.phase] !== undefined) page.act({ type: "study", do: "next" });
+  if (page.study === null || kNext[page.study.phase] === undefined) return;
+  if (page.study.phase === "training") ending.showModal(); // a stray key must not end it
+  else page.act({ type: "study", do: "next" });
 };
 const pause = () => page.act({ type: "study", do: "pause" });
 find("next").addEventListener("click", next);
@@ -76,4 +84,10 @@ find("go").addEventListener("click", () => {
   leave.close();
   page.act({ type: "study", do: "withdraw" });
 });
+find("train-on").addEventListener("click", () => ending.close());
+find("end-training").addEventListener("click", () => {
+  ending.close();
+  page.act({ type: "study", do: "end-training" });
+});
+find("practise").addEventListener("click", () => page.act({ type: "study", do: "practise" }));
 listen(page, answering(page, () => true), { Enter: next, " ": next, p: pause });

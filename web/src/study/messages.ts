@@ -27,6 +27,7 @@ interface StudyBase {
   interval: number; // interval being presented, from 1; 0 between intervals and in a trial with one interval
   takes_answer: boolean;
   training_left_s: number;
+  practice: number; // the current or next practice trial, from 1; 0 for none
   explored: number; // index of the training scene
   scenes: string[];
   answers: "experimenter" | "participant"; // who enters the answers
@@ -51,6 +52,7 @@ export interface Experimenter extends StudyBase {
   needs: string; // what the participant's page lacks, and what to do; "" for nothing
   bound: string; // staircases at a limit of their range; "" for none
   strengths: string;
+  practice_failed: string; // a practice that ended without its criterion; "" for none
   problem: string;
 }
 export interface Participant extends StudyBase {
@@ -63,7 +65,7 @@ export interface Participant extends StudyBase {
 export type Study = Experimenter | Participant;
 
 export type StudyAct =
-  | { type: "study"; do: "next" | "anyway" | "correct" | "pause" | "consent" | "withdraw" | "accept" }
+  | { type: "study"; do: "next" | "anyway" | "correct" | "pause" | "consent" | "withdraw" | "accept" | "end-training" | "practise" }
   | { type: "study"; do: "answer"; yes: boolean }
   | { type: "study"; do: "answer"; interval: number }
   | { type: "study"; do: "tune"; to: "less" | "more"; coarse: boolean }
@@ -80,13 +82,13 @@ function isControls(x: unknown): boolean {
 }
 
 export function isStudy(x: Record<string, unknown>): boolean {
-  const numbers = [x.done, x.trials, x.training_left_s, x.explored, x.interval];
+  const numbers = [x.done, x.trials, x.training_left_s, x.explored, x.interval, x.practice];
   const base = [x.title, x.waits_for].every(isText) && kPhases.includes(x.phase as Phase) && isText(x.task) && isControls(x.controls) &&
     typeof x.takes_answer === "boolean" && typeof x.open === "boolean" &&
     numbers.every((v) => Number.isFinite(v)) && isList(x.scenes, isText);
   if (!base) return false;
   if (x.room === "experimenter")
-    return Number.isFinite(x.participant) && [x.problem, x.strengths, x.needs, x.bound].every(isText) && (x.question === null || isText(x.question));
+    return Number.isFinite(x.participant) && [x.problem, x.strengths, x.needs, x.bound, x.practice_failed].every(isText) && (x.question === null || isText(x.question));
   const asked = x.question as { text?: unknown; jets_mm?: unknown } | null;
   const isJet = (jet: unknown) => isList(jet, (v) => Number.isFinite(v)) && (jet as number[]).length === 3;
   return x.room === "participant" && isText(x.consent) && typeof x.noise === "boolean" && (asked === null || (isText(asked.text) && isList(asked.jets_mm, isJet)));

@@ -44,7 +44,13 @@ describe("a session of a study", () => {
   });
 
   it("asks on both pages, and accepts answers from the experimenter's keys and buttons", async () => {
+    await experimenter.keyboard.press("Enter"); // a single key does not end the training
+    await experimenter.locator("#ending-words").filter({ hasText: "of the training is left" }).waitFor();
+    await experimenter.keyboard.press("Enter"); // the focus is on "Continue the training"
+    await experimenter.locator("#ending").waitFor({ state: "hidden" });
+    expect(study.lines().some((line) => line.kind === "training")).toBe(false);
     await experimenter.keyboard.press("Enter");
+    await experimenter.getByRole("button", { name: "End it now" }).click();
     await comes(experimenter, "ready");
     await experimenter.keyboard.press("Enter");
     let sizes = 0;
@@ -75,7 +81,7 @@ describe("a session of a study", () => {
       expect(text).not.toMatch(/"(method|scene|condition|correct|gate|stimulus)"|pro-stm|\bam\b/);
       const message = JSON.parse(text) as Json;
       if (message.type !== "study") continue;
-      const keys = ["type", "room", "title", "phase", "done", "trials", "open", "task", "controls", "interval", "takes_answer", "training_left_s", "explored", "scenes", "answers", "hand", "consent", "noise", "waits_for", "feedback", "question"];
+      const keys = ["type", "room", "title", "phase", "done", "trials", "open", "task", "controls", "interval", "takes_answer", "training_left_s", "practice", "explored", "scenes", "answers", "hand", "consent", "noise", "waits_for", "feedback", "question"];
       expect(Object.keys(message)).toEqual(keys);
       expect(message.feedback).toBe(null);
       // the jets are those of the question
@@ -120,6 +126,50 @@ describe("a study with noise", () => {
     expect(study.lines().filter((line) => line.kind === "interrupted").length).toBe(1);
     await study.kill("SIGINT");
     expect(study.printed).toContain("The masking noise does not play");
+    await experimenter.close();
+    await participant.close();
+  });
+});
+
+describe("a study with practice, catch trials and a fixed duration", () => {
+  it("practises with feedback, repeats a failed practice, and does not reveal a catch trial", async () => {
+    const study = new Study(protocol('[training]\nseconds = 0\n[practice]\ntrials = 1\nright = 1\nwindow = 1\n[trials]\nrepeats = 2\nrest = 0.1\nsettle = 0.5\n' +
+      'gate = "off"\ncatch_every = 4\ntime_limit = 0.4\nfixed_duration = true'), 31);
+    await study.start();
+    const [experimenter, participant] = [await browser.newPage(), await browser.newPage()];
+    const traffic = new Traffic(participant);
+    await experimenter.goto(study.url);
+    await participant.goto(`${study.url}participant`);
+    await comes(experimenter, "ready");
+    const practise = async (right: boolean) => {
+      await comes(experimenter, "presenting");
+      expect(await experimenter.locator("#count").textContent()).toBe("Practice 1");
+      await experimenter.locator("#first:enabled").waitFor();
+      const before = study.lines().length;
+      const first = experimenter.locator("#first"), second = experimenter.locator("#second");
+      await (right ? first : second).click();
+      await comes(experimenter, "ready");
+      return study.lines().slice(before).find((line) => line.kind === "practice")!.right === 1;
+    };
+    expect(await experimenter.locator("#next-word").textContent()).toBe("Begin the practice");
+    await experimenter.keyboard.press("Enter");
+    expect(await practise(false)).toBe(false); // the seed's first practice trial is answered by yes
+    await experimenter.locator("#practice-failed").filter({ hasText: "without its criterion" }).waitFor();
+    expect(await participant.locator("#feedback").textContent()).toBe("That was wrong.");
+    await experimenter.getByRole("button", { name: "Practise again" }).click();
+    expect(await practise(true)).toBe(true);
+    expect(await participant.locator("#feedback").textContent()).toBe("That was right.");
+    expect(await experimenter.locator("#next-word").textContent()).toBe("Begin the trials");
+    await experimenter.keyboard.press("Enter");
+    for (let i = 0; i < 5; ++i) {
+      await comes(experimenter, "presenting");
+      expect(await experimenter.locator("#first").isDisabled()).toBe(true);
+      await experimenter.locator("#second:enabled").click();
+      await comes(experimenter, i < 4 ? "settling" : "done");
+    }
+    expect(study.lines().filter((line) => line.kind === "catch").map((line) => line.right)).toEqual([1]);
+    for (const text of traffic.texts) expect(text).not.toMatch(/catch|"extra"/);
+    await study.kill("SIGINT");
     await experimenter.close();
     await participant.close();
   });
@@ -185,7 +235,7 @@ ${methods}`);
 function expectNothingTold(traffic: Traffic, study: Study): void {
   const texts = traffic.texts.filter((text) => text.includes('"type":"study"'));
   expect(texts.length).toBeGreaterThan(5);
-  const keys = ["type", "room", "title", "phase", "done", "trials", "open", "task", "controls", "interval", "takes_answer", "training_left_s", "explored", "scenes", "answers", "hand", "consent", "noise", "waits_for", "feedback", "question"];
+  const keys = ["type", "room", "title", "phase", "done", "trials", "open", "task", "controls", "interval", "takes_answer", "training_left_s", "practice", "explored", "scenes", "answers", "hand", "consent", "noise", "waits_for", "feedback", "question"];
   for (const text of texts) {
     expect(Object.keys(JSON.parse(text) as Json)).toEqual(keys);
     expect(text).not.toMatch(/level|reference|felt|correct|start|track|method|condition|\bstm\b|\bam\b/);

@@ -22,19 +22,19 @@ class Excluder {
  public:
   explicit Excluder(const Exclusions& rules) : rules_(rules) {}
 
-  std::vector<Answer> keep(std::span<const Answer> trials,
-                           std::span<const std::string> incomplete) {
+  std::vector<Answer> keep(std::span<const Answer> trials, std::span<const SessionFacts> sessions) {
     std::vector<Answer> out;
+    for (const SessionFacts& session : sessions) judge(session);
     for (const Answer& a : trials) {
-      if (!a.answered || is_excluded(a, incomplete)) continue;
+      if (!a.answered || is_excluded(a)) continue;
       out.push_back(a);
     }
     return out;
   }
   std::vector<std::string> sentences() const {
     std::vector<std::string> out;
-    if (!people_.empty())
-      out.push_back(fmt::format("Sessions not finished, left out: {}.", fmt::join(people_, ", ")));
+    for (const auto& [reason, people] : people_)
+      out.push_back(fmt::format("{}, left out: {}.", reason, fmt::join(people, ", ")));
     if (rules_.overridden_gate)
       out.push_back(fmt::format("Trials left out because the gate did not pass: {}.", gate_));
     if (rules_.response_below || rules_.response_above)
@@ -43,12 +43,22 @@ class Excluder {
   }
 
  private:
-  bool is_excluded(const Answer& a, std::span<const std::string> incomplete) {
-    if (rules_.incomplete &&
-        std::find(incomplete.begin(), incomplete.end(), a.participant) != incomplete.end()) {
-      people_.insert(a.participant);
-      return true;
+  void judge(const SessionFacts& of) {
+    if (rules_.incomplete && !of.finished) leave_out(of, "Sessions not finished");
+    if (rules_.failed_practice && !of.passed_practice)
+      leave_out(of, "Practice without its criterion");
+    if (rules_.wrong_checks_above && of.wrong_checks > *rules_.wrong_checks_above) {
+      leave_out(of, fmt::format("More than {:g} % of catch and attention trials wrong",
+                                100.0 * *rules_.wrong_checks_above));
     }
+  }
+  void leave_out(const SessionFacts& of, const std::string& reason) {
+    people_[reason].insert(of.participant);
+    excluded_.insert(of.participant);
+  }
+
+  bool is_excluded(const Answer& a) {
+    if (excluded_.contains(a.participant)) return true;
     if (rules_.overridden_gate && a.gate == "anyway") return ++gate_, true;
     const bool fast =
         rules_.response_below && a.response_s && *a.response_s < *rules_.response_below;
@@ -59,7 +69,8 @@ class Excluder {
   }
 
   const Exclusions& rules_;
-  std::set<std::string> people_;
+  std::map<std::string, std::set<std::string>> people_;  // by the reason
+  std::set<std::string> excluded_;
   int gate_ = 0, time_ = 0;
 };
 
@@ -199,9 +210,9 @@ class Runner {
 }  // namespace
 
 ConfirmatoryResults run_plan(const StudyPlan& plan, std::span<const Answer> trials,
-                             std::span<const std::string> incomplete, std::uint64_t seed) {
+                             std::span<const SessionFacts> sessions, std::uint64_t seed) {
   Excluder excluder(plan.exclusions);
-  std::vector<Answer> answers = excluder.keep(trials, incomplete);
+  std::vector<Answer> answers = excluder.keep(trials, sessions);
   if (answers.empty()) throw InputError("the plan's exclusions leave no answer");
   std::set<std::string> people;
   for (const Answer& a : answers) people.insert(a.participant);

@@ -39,10 +39,19 @@ struct ConfirmatoryResults {
   std::vector<std::string> left_out;  ///< a sentence for each rule that left something out
 };
 
-/// Runs the plan's tests. @param trials all trials, as read. @param incomplete participants who did
-/// not finish their session. @param seed for permutation tests of many participants.
+/// A participant's session, for the rules of exclusion.
+struct SessionFacts {
+  std::string participant;
+  bool finished = true;
+  bool passed_practice = true;  ///< of all methods
+  double wrong_checks = 0.0;    ///< share of wrong answers to catch and attention trials
+};
+
+/// Runs the plan's tests. @param trials all trials, as read. @param sessions those to which a rule
+/// may apply; participants without one are kept. @param seed for permutation tests of many
+/// participants.
 /// @throws InputError: no answer is left.
 ConfirmatoryResults run_plan(const StudyPlan& plan, std::span<const Answer> trials,
-                             std::span<const std::string> incomplete, std::uint64_t seed);
+                             std::span<const SessionFacts> sessions, std::uint64_t seed);
 
 }  // namespace prostm

@@ -77,6 +77,8 @@ Json exclusions_line(const Exclusions& of) {
   return {{"kind", "exclusions"},
           {"incomplete", of.incomplete},
           {"overridden_gate", of.overridden_gate},
+          {"failed_practice", of.failed_practice},
+          {"wrong_checks_above", or_null(of.wrong_checks_above)},
           {"response_below_s", or_null(of.response_below)},
           {"response_above_s", or_null(of.response_above)}};
 }
@@ -98,7 +100,10 @@ void read_line(const Json& line, StudyPlan& plan) {
   } else if (kind == "settings") {
     read_settings(line, plan);
   } else if (kind == "exclusions") {
-    plan.exclusions = {line.at("incomplete"), line.at("overridden_gate"),
+    plan.exclusions = {line.at("incomplete"),
+                       line.at("overridden_gate"),
+                       line.value("failed_practice", false),
+                       number_or_null(line.value("wrong_checks_above", Json(nullptr))),
                        number_or_null(line.at("response_below_s")),
                        number_or_null(line.at("response_above_s"))};
   } else if (kind == "note") {
@@ -118,7 +123,9 @@ std::map<std::string, std::string> flat(const Json& protocol) {
   std::map<std::string, std::string> out;
   const Json settings = protocol.flatten();
   for (const auto& [key, value] : settings.items()) {
-    if (key.ends_with("/pipeline/threads") || key.ends_with("/pipeline/tracker")) continue;
+    if (key.ends_with("/pipeline/threads") || key.ends_with("/pipeline/tracker") ||
+        key.ends_with("/simulated_array/realtime"))
+      continue;
     std::string name = key.substr(1);
     std::replace(name.begin(), name.end(), '/', '.');
     out[name] = value.dump(-1, ' ', false, Json::error_handler_t::replace);

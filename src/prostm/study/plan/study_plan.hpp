@@ -39,6 +39,9 @@ inline constexpr std::array<std::string_view, 2> kNames<Correction> = {"holm", "
 struct Exclusions {
   bool incomplete = false;       ///< participants who did not finish their session
   bool overridden_gate = false;  ///< trials presented although the gate did not pass
+  bool failed_practice = false;  ///< participants who did not reach the criterion of a practice
+  /// participants by their share of wrong answers to catch and attention trials
+  std::optional<double> wrong_checks_above;
   std::optional<double> response_below, response_above;  ///< trials by response time [s]
 };
 
@@ -82,7 +85,8 @@ std::string plan_text(const StudyPlan& plan);
 /// a missing or invalid value.
 StudyPlan plan_from_text(std::string_view text, const std::string& file);
 
-/// Checks that a protocol is one of the plan's. Threads and tracker are not compared.
+/// Checks that a protocol is one of the plan's. Threads, tracker and the simulated array's clock
+/// are not compared.
 /// @param where names the protocol in messages, "answers/participant-1.jsonl, line 1".
 /// @throws InputError naming the settings that differ.
 void require_planned(const nlohmann::ordered_json& protocol, const std::string& where,

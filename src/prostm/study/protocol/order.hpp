@@ -32,7 +32,7 @@ struct Trial {
 std::vector<int> method_order(const Protocol& protocol, int participant);
 
 /// Random numbers for one purpose, independent of those for other purposes.
-enum class Purpose : std::uint32_t { Methods = 1, Trials, Tracks, Intervals };
+enum class Purpose : std::uint32_t { Methods = 1, Trials, Tracks, Intervals, ExtraTrials };
 Random random_for(const Protocol& protocol, Purpose purpose, std::uint32_t number);
 
 /// All trials of one participant in an identification study, in order: for each of their methods,

@@ -34,6 +34,25 @@ void list_training(Settings& s, V& v) {
 }
 
 template <class Settings, class V>
+void list_practice(Settings& s, V& v) {
+  v.field({.name = "trials",
+           .least = 0,
+           .most = 1000,
+           .help = "practice trials before the trials of each method, at most; 0 for none"},
+          s.trials);
+  v.field({.name = "right",
+           .least = 0,
+           .most = 1,
+           .help = "practice ends at this share of right answers; 0 for a fixed number of trials"},
+          s.right);
+  v.field({.name = "window",
+           .least = 1,
+           .most = 1000,
+           .help = "the last answers of which the share is taken"},
+          s.window);
+}
+
+template <class Settings, class V>
 void list_trials(Settings& s, V& v) {
   v.field({.name = "repeats",
            .least = 1,
@@ -68,6 +87,19 @@ void list_trials(Settings& s, V& v) {
            .most = 600,
            .help = "longest stimulus; 0: until the answer"},
           s.time_limit);
+  v.field({.name = "fixed_duration",
+           .help = "the stimulus lasts its whole time limit or interval, then the answer is taken"},
+          s.fixed_duration);
+  v.field({.name = "catch_every",
+           .least = 0,
+           .most = 1000,
+           .help = "one catch trial, without a stimulus, in every so many trials; 0 for none"},
+          s.catch_every);
+  v.field({.name = "attention_every",
+           .least = 0,
+           .most = 1000,
+           .help = "one trial that asks for a certain answer in every so many; 0 for none"},
+          s.attention_every);
   v.field({.name = "strength",
            .least = 0,
            .most = 10,
@@ -95,6 +127,12 @@ void TrainingSettings::visit(SettingsReader& v) const {
 }
 void TrainingSettings::visit(SettingsWriter& v) {
   list_training(*this, v);
+}
+void PracticeSettings::visit(SettingsReader& v) const {
+  list_practice(*this, v);
+}
+void PracticeSettings::visit(SettingsWriter& v) {
+  list_practice(*this, v);
 }
 void TrialSettings::visit(SettingsReader& v) const {
   list_trials(*this, v);

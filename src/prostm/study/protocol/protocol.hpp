@@ -69,18 +69,31 @@ struct TrainingSettings {
   void visit(SettingsWriter& v);
 };
 
+/// [practice], after the training of each method
+struct PracticeSettings {
+  int trials = 0;      ///< largest number; 0: no practice
+  double right = 0.8;  ///< it ends at this share of right answers; 0: after all `trials`
+  int window = 10;     ///< the last answers of which the share is taken
+
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
+};
+
 /// [trials]
 struct TrialSettings {
   const Task* task = nullptr;  ///< the participant's task; set when the protocol is read
   int repeats = 8;  ///< trials of each scene with each method; staircases end by their own rule
   Questions questions = Questions::Random;
   AnswersFrom answers = AnswersFrom::Experimenter;
-  bool noise = false;       ///< the participant's page plays noise that masks the array's sound
-  bool feedback = false;    ///< tells the participant whether the answer was right
-  int break_every = 0;      ///< trials; 0: no breaks
-  double rest = 1.0;        ///< still air before each trial [s]
-  double settle = 2.0;      ///< silence after `rest`, while the smoke develops [s]
-  double time_limit = 0.0;  ///< longest stimulus [s]; 0: until the answer
+  bool noise = false;           ///< the participant's page plays noise that masks the array's sound
+  bool feedback = false;        ///< tells the participant whether the answer was right
+  int break_every = 0;          ///< trials; 0: no breaks
+  double rest = 1.0;            ///< still air before each trial [s]
+  double settle = 2.0;          ///< silence after `rest`, while the smoke develops [s]
+  double time_limit = 0.0;      ///< longest stimulus [s]; 0: until the answer
+  bool fixed_duration = false;  ///< the answer is taken after the stimulus, which it cannot end
+  int catch_every = 0;          ///< trials, among which one catch trial is given; 0: none
+  int attention_every = 0;      ///< the same for attention trials
   /// Largest relative difference in rendered force between the scenes of a method that is
   /// tolerated: the Weber fraction of touch (docs/design/study.md).
   double strength = 0.2;
@@ -119,6 +132,7 @@ struct StudyMethod {
 struct Protocol {
   StudySettings study;
   TrainingSettings training;
+  PracticeSettings practice;
   TrialSettings trials;
   MarkerSettings markers;
   LevelSettings level;               ///< for tasks with levels

@@ -26,6 +26,7 @@ Presentation presentation_of(const StudySession& session, std::uint32_t number) 
   Presentation now;
   now.number = number;
   if (session.phase() != StudyPhase::Presenting) return now;
+  if (session.practice_trial() > 0) return now;  // as in training
   now.trial = static_cast<std::uint32_t>(session.trials_done() + 1);
   const Protocol& protocol = session.protocol();
   if (!protocol.markers.conditions) return now;

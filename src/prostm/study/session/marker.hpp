@@ -16,7 +16,7 @@ namespace prostm {
 /// A stimulus, or training, between two mutes. Samples carry it as their label.
 struct Presentation {
   std::uint32_t number = 0;  ///< counts presentations of this run, from 1; a trial may have several
-  std::uint32_t trial = 0;   ///< from 1; 0: training
+  std::uint32_t trial = 0;   ///< from 1; 0: training or practice
   std::uint16_t condition = 0;  ///< from 1, scenes varying fastest; 0: not disclosed
 
   /// Packs the presentation; numbers below 2²⁴ are preserved.

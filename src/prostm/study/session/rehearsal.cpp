@@ -42,11 +42,14 @@ std::optional<StudyAct> Rehearsal::act(const StudySession& session, double time)
       return StudyAct{.what = Do::Consent};
     case StudyPhase::About:
       return StudyAct{.what = Do::About};
+    case StudyPhase::Training:
+      return StudyAct{.what = Do::EndTraining};
     case StudyPhase::Settling:
       if (!waits || passed < kPatience) return {};
       return StudyAct{.what = Do::Anyway};
     case StudyPhase::Presenting:
       if (!session.takes_answer()) return {};
+      if (session.extra() && session.extra()->wanted) return task.act_of(*session.extra()->wanted);
       if (person_) return person_->act(session.trial());
       return task.guessed(random_);
     default:

@@ -31,6 +31,7 @@ StudySession::StudySession(const Protocol& protocol, int participant, ResponseFi
       participant_(participant),
       file_(file),
       course_(protocol, replaces ? replaces->order : participant),
+      extras_(protocol, replaces ? replaces->order : participant),
       wanted_(still_air()),
       training_left_(protocol.training.seconds),
       looked_(now.time),
@@ -56,6 +57,8 @@ void StudySession::enter(StudyPhase phase, double time) {
   waits_for_.clear();
   anyway_ = false;
   passed_over_.reset();
+  extra_.reset();
+  if (phase == StudyPhase::Settling) extra_ = extras_.next(trials_done(), course_.trial());
   wanted_ = still_air();
   if (phase != StudyPhase::Training) return;
   explored_ = 0;
@@ -79,7 +82,8 @@ StudyWanted StudySession::exploring(bool sound) const {
 /// The trial's scene, with its level or the standard.
 StudyWanted StudySession::stimulus(bool level, bool sound) const {
   const Trial& t = trial();
-  StudyWanted wanted = {.method = t.method, .scene = t.scene, .sound = sound};
+  const bool is_silent = extra_ && extra_->kind == ExtraKind::Catch;
+  StudyWanted wanted = {.method = t.method, .scene = t.scene, .sound = sound && !is_silent};
   wanted.standard = !level && protocol_.standard;
   if (t.level && !wanted.standard) wanted.level = level ? *t.level : protocol_.level.reference;
   return wanted;
@@ -91,6 +95,7 @@ void StudySession::pass_consent(double time) {
 }
 
 void StudySession::begin_method(double time) {
+  extras_.begin_practice();
   training_left_ = protocol_.training.seconds;
   enter(training_left_ > 0.0 ? StudyPhase::Training : StudyPhase::Ready, time);
 }
@@ -237,12 +242,14 @@ ResponseLine StudySession::trial_line(std::optional<int> answer, const StudySigh
 
 std::string StudySession::answer(const StudyAct& act, const StudySight& sight) {
   if (!intervals_.takes_answer()) {
+    if (protocol_.trials.fixed_duration) return "the answer is taken after the stimulus";
     return fmt::format("{} intervals must be felt before an answer",
                        task().traits().intervals == 2 ? "both" : "all");
   }
   const std::variant<int, std::string> read = task().answer_of(act);
   if (const auto* refusal = std::get_if<std::string>(&read)) return *refusal;
   const int answer = std::get<int>(read);
+  if (extra_) return end_extra(answer, sight);
   const ResponseLine line = trial_line(answer, sight);
   if (protocol_.trials.feedback) feedback_ = line[line::kCorrect] == 1;
   last_ = answer;
@@ -302,6 +309,24 @@ std::string StudySession::correct(const StudySight& sight) {
   return write(line, sight);
 }
 
+std::string StudySession::explore(int scene) {
+  if (scene < 0 || scene >= static_cast<int>(protocol_.scenes.size()))
+    return "there is no such scene";
+  explored_ = scene;
+  wanted_ = exploring(wanted_.sound);
+  return {};
+}
+
+bool StudySession::is_resting() const {
+  return phase_ == StudyPhase::Ready || phase_ == StudyPhase::Break || phase_ == StudyPhase::Paused;
+}
+
+std::string StudySession::go_on(const StudySight& sight) {
+  practice_failed_.clear();
+  enter(StudyPhase::Settling, sight.time);
+  return write({{line::kKind, line::kGo}}, sight);
+}
+
 std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
   using Do = StudyAct::Do;
   const auto refuse = [&] {
@@ -320,20 +345,19 @@ std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
       return write({{line::kKind, line::kAbout}, {"answers", act.about}}, sight);
     case Do::Explore:
       if (phase_ != StudyPhase::Training) return refuse();
-      if (act.scene < 0 || act.scene >= static_cast<int>(protocol_.scenes.size()))
-        return "there is no such scene";
-      explored_ = act.scene;
-      wanted_ = exploring(wanted_.sound);
-      return {};
+      return explore(act.scene);
     case Do::Next:
       closed_ = over;
       if (over) return {};
-      if (phase_ == StudyPhase::Training) return end_training(sight);
-      if (phase_ != StudyPhase::Ready && phase_ != StudyPhase::Break &&
-          phase_ != StudyPhase::Paused)
-        return refuse();
-      enter(StudyPhase::Settling, sight.time);
-      return write({{line::kKind, line::kGo}}, sight);
+      if (phase_ == StudyPhase::Training)
+        return "the training is not over; \"end-training\" ends it before its time";
+      return is_resting() ? go_on(sight) : refuse();
+    case Do::EndTraining:
+      if (phase_ != StudyPhase::Training) return refuse();
+      return end_training(sight);
+    case Do::Practise:
+      if (phase_ != StudyPhase::Ready || practice_failed_.empty()) return refuse();
+      return practise_again(sight);
     case Do::Anyway:
       if (phase_ != StudyPhase::Settling) return refuse();
       anyway_ = true;

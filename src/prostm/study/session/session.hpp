@@ -13,6 +13,7 @@
 
 #include "prostm/core/text/names.hpp"
 #include "prostm/stimulus/stimulus_gate.hpp"
+#include "prostm/study/extra/extra_trials.hpp"
 #include "prostm/study/session/page_watch.hpp"
 #include "prostm/study/session/response_file.hpp"
 #include "prostm/study/session/study_sight.hpp"
@@ -26,7 +27,7 @@ enum class StudyPhase : std::uint8_t {
   Consent,   ///< the participant reads the consent form, and agrees or leaves
   About,     ///< the participant's answers about themselves
   Training,  ///< the participant explores the scenes
-  Ready,     ///< before the first trial of a method, and after a pause or a crash
+  Ready,     ///< before the practice or the first trial of a method, and after a crash
   Settling,  ///< silence while the smoke develops, until the gate passes and the participant's page
              ///< is ready
   Presenting,  ///< the stimulus is presented, and the question asked
@@ -87,11 +88,19 @@ class StudySession {
   const StudyWanted& wanted() const { return wanted_; }
   const Protocol& protocol() const { return protocol_; }
   int participant() const { return participant_; }
-  bool closed() const { return closed_; }  ///< the run may end
-  std::size_t trials_done() const { return course_.done(); }
+  bool closed() const { return closed_; }                     ///< the run may end
+  std::size_t trials_done() const { return course_.done(); }  ///< without extra trials
   const Course& course() const { return course_; }
   /// The next trial, or the one in progress. @pre not all trials are done.
-  const Trial& trial() const { return course_.trial(); }
+  const Trial& trial() const { return extra_ ? extra_->trial : course_.trial(); }
+  /// Set while the trial is not one of the course.
+  const std::optional<ExtraTrial>& extra() const { return extra_; }
+  /// The number of the current or next practice trial, from 1; 0 if none follows.
+  int practice_trial() const;
+  /// A sentence about a practice that ended without its criterion; empty after the next act.
+  const std::string& practice_failed() const { return practice_failed_; }
+  /// The question of the trial, or the instruction of an attention trial.
+  std::string question() const;
   /// The current interval of the trial, from 1; 0 during silence, or if there is only one.
   int interval() const { return phase_ == StudyPhase::Presenting ? intervals_.interval() : 0; }
   /// Whether an answer can be given now.
@@ -163,7 +172,14 @@ class StudySession {
   void end_trial(const ResponseLine& line, const StudySight& sight,
                  const std::function<void()>& count);
   std::string correct(const StudySight& sight);
+  std::string explore(int scene);
+  bool is_resting() const;
+  std::string go_on(const StudySight& sight);
   std::string end_training(const StudySight& sight);
+  std::string end_extra(int answer, const StudySight& sight);
+  std::string end_practice(const StudySight& sight);
+  std::string practise_again(const StudySight& sight);
+  void repeat_extra(ExtraKind kind, const ResponseLine& line);
   std::string write(ResponseLine line, const StudySight& sight);
   std::string write_rest(double time);
   void add_strength(const Trial& trial, double target, double rendered);
@@ -175,6 +191,9 @@ class StudySession {
   const int participant_;
   ResponseFile& file_;
   Course course_;  // with the recorded answers
+  ExtraTrials extras_;
+  std::optional<ExtraTrial> extra_;
+  std::string practice_failed_;
   Intervals intervals_;
   std::optional<Trial> last_trial_;  // the last one answered
   StudyPhase phase_ = StudyPhase::Ready;

@@ -86,10 +86,15 @@ StudyPhase StudySession::replay() {
     if (kind == line::kTraining) trained = true;
     if (kind == line::kCorrection) repeat_correction(line);
     if (kind == line::kInterrupted) page_.interrupt();
+    for (std::size_t i = 0; i < kNames<ExtraKind>.size(); ++i)
+      if (kind == kNames<ExtraKind>[i]) repeat_extra(static_cast<ExtraKind>(i), line);
+    if (kind == line::kPractiseAgain) extras_.begin_practice();
     if (kind != line::kTrial) continue;
     if (course_.is_done()) throw InputError(file_.path() + " has more trials than its protocol");
     repeat_trial(line);
-    if (starts_method()) trained = false;
+    if (!starts_method()) continue;
+    trained = false;
+    extras_.begin_practice();
   }
   if (withdrawn) return StudyPhase::Withdrawn;
   if (course_.is_done()) return StudyPhase::Done;

@@ -20,9 +20,12 @@ class Intervals {
   bool shows_level() const { return plan_.shows_level[place_]; }
   /// The current interval, from 1; 0 during silence, or if there is only one.
   int interval() const { return playing_ && several() ? static_cast<int>(place_) + 1 : 0; }
-  /// Whether all intervals have been presented, so that an answer can be given.
-  bool takes_answer() const { return begun_ >= plan_.shows_level.size(); }
-  double asked_at() const { return asked_at_; }  ///< when takes_answer() became true [s]
+  /// Whether an answer can be given: the last interval has begun, or ended if the duration is
+  /// fixed.
+  bool takes_answer() const {
+    return plan_.answer_after ? over_ : begun_ >= plan_.shows_level.size();
+  }
+  double asked_at() const { return asked_at_; }  ///< when the last interval began [s]
   bool is_over() const { return over_; }         ///< the last interval has ended
 
  private:

@@ -10,6 +10,7 @@ inline constexpr const char* kResume = "resume";
 inline constexpr const char* kConsent = "consent";
 inline constexpr const char* kAbout = "about";
 inline constexpr const char* kTraining = "training";
+inline constexpr const char* kPractised = "practised";
 inline constexpr const char* kGo = "go";
 inline constexpr const char* kTrial = "trial";  // also the key of its number
 inline constexpr const char* kCorrection = "correction";
@@ -18,6 +19,7 @@ inline constexpr const char* kBound = "bound";  // also a key
 inline constexpr const char* kClock = "clock";
 inline constexpr const char* kPage = "page";  // also a key of a trial
 inline constexpr const char* kMarker = "marker";
+inline constexpr const char* kPractiseAgain = "practise-again";
 inline constexpr const char* kPause = "pause";
 inline constexpr const char* kWithdrawn = "withdrawn";
 inline constexpr const char* kEnd = "end";
@@ -56,6 +58,10 @@ inline constexpr const char* kPlayed = "played";
 inline constexpr const char* kHand = "hand";
 inline constexpr const char* kStart = "start";      // initial level of an adjustment
 inline constexpr const char* kChanges = "changes";  // level changes of an adjustment
+
+// keys of practice, catch and attention trials
+inline constexpr const char* kRight = "right";
+inline constexpr const char* kPassed = "passed";
 
 // keys of the last line
 inline constexpr const char* kStrengths = "strengths";

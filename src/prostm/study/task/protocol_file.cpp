@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <utility>
 
 #include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/settings_file.hpp"
 #include "prostm/pipeline/world_kinds.hpp"
+#include "prostm/study/extra/extra_trials.hpp"
 #include "prostm/study/task/detail/settle_level.hpp"
 #include "prostm/study/task/task.hpp"
 
@@ -47,6 +49,17 @@ class TrialTable {
   Tasks tasks_;
   std::vector<std::string_view> names_;
 };
+
+/// Leaves out newer settings that are not used, so that files of earlier versions, which lack them,
+/// belong to the same protocol.
+void leave_out_defaults(const Protocol& protocol, nlohmann::ordered_json& json) {
+  nlohmann::ordered_json& trials = json["trials"];
+  if (!protocol.trials.fixed_duration) trials.erase("fixed_duration");
+  if (protocol.trials.catch_every == 0) trials.erase("catch_every");
+  if (protocol.trials.attention_every == 0) trials.erase("attention_every");
+  if (protocol.practice.trials > 0)
+    json["practice"] = settings_to_json({group_of("practice", protocol.practice)})["practice"];
+}
 
 /// The names in a table of the protocol. @throws InputError: fewer than `least`.
 std::vector<std::string> names_in(std::string_view text, const std::string& file,
@@ -98,12 +111,12 @@ Protocol protocol_from_toml(std::string_view text, const std::string& file,
   Protocol protocol;
   protocol.trials.task = tasks.front();
   TrialTable trials(protocol.trials, tasks);
-  const auto given_above =
-      settings_from_toml(text, file,
-                         {group_of("study", protocol.study),
-                          group_of("training", protocol.training), group_of("trials", trials),
-                          group_of("markers", protocol.markers), group_of("level", protocol.level)},
-                         {}, {"method", "scene"});
+  const auto given_above = settings_from_toml(
+      text, file,
+      {group_of("study", protocol.study), group_of("training", protocol.training),
+       group_of("practice", protocol.practice), group_of("trials", trials),
+       group_of("markers", protocol.markers), group_of("level", protocol.level)},
+      {}, {"method", "scene"});
   const Task& task = *protocol.trials.task;
   const std::span<const WorldScene> known = world_named(base.world).scenes();
   for (const std::string& name : names_in(text, file, "scene", task.traits().least_scenes))
@@ -117,6 +130,11 @@ Protocol protocol_from_toml(std::string_view text, const std::string& file,
     study::require_playable_method(method, file, text);
   }
   study::settle_level(given_above.names, file, text, protocol);
+  try {
+    validate_extra_trials(protocol);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
+  }
   const std::size_t conditions = protocol.methods.size() * protocol.scenes.size();
   if (protocol.markers.conditions && conditions > kMostMarkedConditions) {
     throw InputError(fmt::format(
@@ -138,6 +156,7 @@ nlohmann::ordered_json protocol_json(const Protocol& protocol) {
   nlohmann::ordered_json json =
       settings_to_json({group_of("study", protocol.study), group_of("training", protocol.training),
                         group_of("trials", trials), group_of("markers", protocol.markers)});
+  leave_out_defaults(protocol, json);
   for (const StudyScene& scene : protocol.scenes)
     json["scene"][scene.name] = {{"question", scene.question}};
   for (const StudyMethod& method : protocol.methods)

@@ -13,7 +13,7 @@ namespace prostm {
 /// An action of the participant or the experimenter.
 struct StudyAct {
   enum class Do : std::uint8_t {
-    Next,     ///< continues from Ready, Break and Paused; ends Training; closes a finished session
+    Next,     ///< continues from Ready, Break and Paused; closes a finished session
     Anyway,   ///< presents a trial although the gate does not pass or the page does not meet a need
     Answer,   ///< answers the question: `yes`, or `interval` if the task has several
     Correct,  ///< changes the last answer to the other one, until the next question
@@ -22,8 +22,10 @@ struct StudyAct {
     About,    ///< `about`
     Explore,  ///< in Training: the scene `scene`
     Withdraw,
-    Tune,   ///< changes an adjustment's level by `steps`
-    Accept  ///< accepts the level: it feels like the standard
+    Tune,         ///< changes an adjustment's level by `steps`
+    Accept,       ///< accepts the level: it feels like the standard
+    EndTraining,  ///< ends Training before its time
+    Practise      ///< in Ready, repeats a practice that ended without its criterion
   } what = Do::Next;
   bool yes = false;
   int scene = 0;
@@ -33,8 +35,8 @@ struct StudyAct {
   bool coarse = false;  ///< large steps
 };
 template <>
-inline constexpr std::array<std::string_view, 11> kNames<StudyAct::Do> = {
-    "next",  "anyway",  "answer",   "correct", "pause", "consent",
-    "about", "explore", "withdraw", "tune",    "accept"};
+inline constexpr std::array<std::string_view, 13> kNames<StudyAct::Do> = {
+    "next",    "anyway",   "answer", "correct", "pause",        "consent", "about",
+    "explore", "withdraw", "tune",   "accept",  "end-training", "practise"};
 
 }  // namespace prostm

@@ -31,6 +31,7 @@ IntervalPlan Task::intervals(const Protocol& protocol, const Trial& trial) const
   plan.length = traits_.has_levels ? protocol.level.interval : protocol.trials.time_limit;
   plan.gap = protocol.level.gap;
   plan.in_turn = is_tuned();
+  plan.answer_after = protocol.trials.fixed_duration;
   plan.shows_level.clear();
   for (int i = 1; i <= traits_.intervals; ++i)
     plan.shows_level.push_back(!traits_.compares || i == trial.level_at);

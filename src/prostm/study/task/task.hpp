@@ -65,6 +65,7 @@ struct IntervalPlan {
   double length = 0.0;                     ///< of an interval [s]; 0: lasts until the answer
   double gap = 0.0;                        ///< silence between two of them [s]
   bool in_turn = false;                    ///< repeat the intervals until the trial ends
+  bool answer_after = false;               ///< an answer is taken only after all intervals
 };
 
 /// A study task. Stateless: one object serves all sessions.
@@ -128,8 +129,6 @@ class Task {
   virtual StudyAct respond(const Trial& trial, Perception& perception) const;
   /// An answer drawn at random. @pre the task is not Tuned.
   StudyAct guessed(Random& random) const;
-
- protected:
   /// The act that gives the answer of this number.
   StudyAct act_of(int answer) const;
 

@@ -7,6 +7,7 @@
 
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/text/nearest_name.hpp"
+#include "prostm/study/extra/extra_answers.hpp"
 #include "prostm/study/session/response_file.hpp"
 #include "prostm/study/task/line_keys.hpp"
 #include "prostm/study/task/task.hpp"
@@ -23,6 +24,48 @@ AnswerKind kind_of(const ResponseLine& protocol, Tasks tasks, const std::string&
                                   [&](const Task* task) { return task->name() == name; });
   if (found != tasks.end()) return (*found)->answer_kind(!level.value("against", "").empty());
   throw InputError(fmt::format("{}, line 1: the task {} is unknown", file, shown_name(name)));
+}
+
+/// A cell of a table: true and false are 1 and 0, null is empty.
+std::string cell_of(const ResponseLine& value) {
+  if (value.is_null()) return "";
+  if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+/// Facts in a trial's line besides the answer. Each trial of a study has the same columns.
+std::vector<std::pair<std::string, std::string>> other_of(const ResponseLine& line) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const char* key : {line::kTrack, line::kReference, line::kInterval, line::kStart,
+                          line::kAnyway, line::kTarget, line::kRendered, line::kHandGone}) {
+    if (const auto found = line.find(key); found != line.end())
+      out.emplace_back(key, cell_of(*found));
+  }
+  if (const auto played = line.find(line::kPlayed); played != line.end()) {
+    for (const char* key : {"speed_m_s", "period_ms", "changed_paths"}) {
+      const bool is_known = played->is_object() && played->contains(key);
+      out.emplace_back(fmt::format("played_{}", key), is_known ? cell_of(played->at(key)) : "");
+    }
+  }
+  for (const char* key : {"utc", "time_s"}) {
+    if (const auto found = line.find(key); found != line.end())
+      out.emplace_back(key, cell_of(*found));
+  }
+  return out;
+}
+
+/// Sets the answer as it was given, where it is not the one to a question.
+void set_given(const ResponseLine& line, Answer& out) {
+  const auto given = line.find(line::kAnswer);
+  if (given == line.end() || !out.question.empty()) return;
+  constexpr const char* kGiven = "answer_given";
+  const auto found = std::find_if(out.other.begin(), out.other.end(),
+                                  [](const auto& of) { return of.first == kGiven; });
+  if (found == out.other.end()) {
+    out.other.emplace(out.other.begin(), kGiven, cell_of(*given));
+  } else {
+    found->second = cell_of(*given);
+  }
 }
 
 Answer answer_of(const ResponseLine& line, const std::string& participant, AnswerKind kind) {
@@ -43,6 +86,7 @@ Answer answer_of(const ResponseLine& line, const std::string& participant, Answe
   if (const auto gate = line.find(line::kGate); gate != line.end() && gate->is_object())
     answer.gate = gate->value("pass", false) ? "pass" : "fail";
   if (line.value(line::kAnyway, false)) answer.gate = "anyway";
+  answer.other = other_of(line);
   return answer;
 }
 
@@ -74,6 +118,7 @@ void take_line(const ResponseLine& line, const std::string& where, AnswerKind of
   }
   if (of == AnswerKind::Adjusted) return;
   Answer& answer = out.answers.back();
+  set_given(line, answer);
   answer.correct = line.at(of == AnswerKind::Felt ? line::kFelt : line::kCorrect).get<int>() == 1;
   if (!answer.question.empty()) answer.yes = line.at(line::kAnswer).get<int>() == 1;
 }
@@ -106,6 +151,8 @@ Responses read_responses(std::string_view text, const std::string& file, Tasks t
       if (kind == line::kTrial || kind == line::kCorrection) take_line(lines[i], where, of, out);
     }
     for (Answer& answer : out.answers) answer.run = facts;
+    const auto extra = sentences(extra_answers(lines), out.file.participant);
+    notes.insert(notes.end(), extra.begin(), extra.end());
   } catch (const ResponseLine::exception& error) {
     throw InputError(fmt::format("{}: {}", where, error.what()));
   }
