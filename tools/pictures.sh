@@ -1,5 +1,5 @@
 #!/bin/bash
-# Draws the pictures of the README and docs with the release build: tools/pictures.sh
+# Draws the pictures of the README and docs with the release build and its Python module: tools/pictures.sh
 set -euo pipefail
 (($# == 0)) || { sed -n '2s/^# //p' "$0" >&2; exit 2; }
 root=$(dirname "$(dirname "$(readlink -f "$0")")")
@@ -10,8 +10,8 @@ mkdir -p "$root/docs/pictures"
 cd "$work"
 "$prostm" run --scene one-plume --seconds 6 --as-fast-as-possible --figure-at 4.5 \
   --figure "$root/docs/pictures/one-plume.png"
-"$prostm" run --scene four-plumes --hand study --seconds 6 --as-fast-as-possible --figure-at 5.5 \
-  --figure "$root/docs/pictures/four-plumes.png"
+PYTHONPATH=$root/build/release/python /usr/bin/python3 "$root/tools/draw_animation.py" "$prostm" \
+  "$root/docs/pictures/four-plumes.svg"
 for scene in one-plume four-plumes; do
   "$prostm" capture --scene $scene --hand study --frames 120 --out $scene.h5
 done
