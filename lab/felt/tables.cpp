@@ -118,7 +118,7 @@ void print_skins(const JudgedSet& set) {
 
 /// Prints shape and strength by each percept model and control of the published experiments: the
 /// lack and the ratio of strengths to those of the first way, and how much more (P25) is, with the
-/// default weight.
+/// default weight and without spill.
 void print_models(const JudgedSet& set) {
   const double weight = PlanSettings().strength_weight;
   fmt::print(

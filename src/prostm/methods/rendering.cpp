@@ -178,7 +178,8 @@ void Renderer::Parts::score(const TargetField& target, Rendering& out) const {
   out.ghosts = ghosts_of(target, out.felt.percept);
 }
 
-/// Renders every number of foci, and keeps the rendering with the least (P25) of its own percept.
+/// Renders every number of foci, and keeps the rendering with the least (P25), without spill, of
+/// its own percept.
 Rendering Renderer::Parts::felt_am_rendering(const TargetField& target) {
   Rendering best;
   double least = std::numeric_limits<double>::infinity();

@@ -9,9 +9,11 @@
 
 #include "plan/plan_checks.hpp"
 #include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 #include "prostm/fields/fields.hpp"
 #include "prostm/plan/detail/fit/felt/plain_loops.hpp"
 #include "prostm/plan/felt_plan.hpp"
+#include "prostm/score/score.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm::planning {
@@ -188,6 +190,51 @@ TEST(FeltPreset, TradesShapeForStrength) {
   EXPECT_GT(shape.paths, 6U);
 }
 
+/// A ring of a radius of 22 mm on a plane of skin.
+TargetField ring(double cell, const Vec2& centre) {
+  constexpr double kEdge = 0.12, kRadius = 22e-3, kWidth = 6e-3;
+  const int cells = static_cast<int>(std::lround(kEdge / cell));
+  TargetField field;
+  field.resize(cells, cells);
+  field.cell = cell;
+  field.origin = Vec2::Constant(-0.5 * cell * (cells - 1));
+  for (int row = 0; row < cells; ++row) {
+    for (int col = 0; col < cells; ++col) {
+      const std::size_t i = field.index(row, col);
+      const Vec2 at = field.origin + cell * Vec2(col, row);
+      field.skin[i] = 1;
+      field.pressure[i] = std::exp(-0.5 * std::pow(((at - centre).norm() - kRadius) / kWidth, 2));
+    }
+  }
+  return field;
+}
+
+/// How often a closed path goes round a point.
+template <class Points>
+int turns_around(const Points& points, const Vec2& centre) {
+  double angle = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec2 from = points[i] - centre, to = points[(i + 1) % points.size()] - centre;
+    angle += std::atan2(from.x() * to.y() - from.y() * to.x(), from.dot(to));
+  }
+  return static_cast<int>(std::lround(angle / (2.0 * kPi)));
+}
+
+// More paths would cross its middle, which the model of the skin hardly feels.
+TEST(FeltPreset, DrawsARingWithOnePathAroundIt) {
+  PlanSettings settings = felt(0.1);
+  settings.sigma = 4.75e-3;
+  for (const double cell : {1.5e-3, 2e-3, 2.5e-3}) {
+    for (const Vec2& centre : {Vec2(0.0, 0.0), Vec2(3e-3, -2e-3)}) {
+      const TargetField field = ring(cell, centre);
+      const Plan plan = planned(settings, field).first;
+      ASSERT_EQ(plan.paths.size(), 1U) << cell << ' ' << centre.transpose();
+      EXPECT_EQ(std::abs(turns_around(plan.paths[0].points, centre)), 1);
+      EXPECT_LT(score_plan(field, plan, 0, settings.sigma, settings.gain_law()).spill, 0.06);
+    }
+  }
+}
+
 TEST(FeltPreset, IsFeltBetterThanPressuresOfTheField) {
   PlanSettings fast = felt(0.0);
   fast.preset = Preset::Fast;
@@ -318,7 +365,7 @@ TEST(FeltPreset, MakesPlansAnewByTurnsIfThereIsNoTimeForAll) {
     EXPECT_EQ(planner.plan(targets, out, stats), PlanStatus::Planned);
     paths = out.paths.size();
   };
-  for (int frame = 0; frame < 40; ++frame) plan(fields::Pattern::Letter, frame);
+  for (int frame = 0; frame < 40; ++frame) plan(fields::Pattern::Fingertips, frame);
   EXPECT_EQ(paths, 4U) << "there is no time to compare";
   for (int frame = 40; frame < 80; ++frame) plan(fields::Pattern::OnePlume, frame);
   EXPECT_EQ(paths, 1U) << "the last plan costs much more, so others were made by turns";

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "prostm/core/random.hpp"
@@ -67,6 +68,45 @@ void expect_gradient(const Cost& cost, const std::vector<float>& at, const Chang
   }
   EXPECT_GT(whole, 0.0);
   EXPECT_LT(std::sqrt(apart / whole), share);
+}
+
+// Against a search of the nearest segment for each cell.
+TEST(EnvelopeLack, SpillsWhatALoopOverSegmentsSpills) {
+  constexpr double kSigma = 5.0;
+  const TargetField field = fields::make(fields::Pattern::Ring, 10);
+  FeltCells cells(400);
+  cells.set(field, max_pressure(field));
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    Random random(seed);
+    const std::vector<float> loops = uneven_loops(random);
+    constexpr std::size_t n = kPaths * kPoints;
+    const std::span<const float> all = loops, pressure = all.first(n);
+    const StepPoints points{static_cast<int>(kPoints), all.subspan(n, n), all.subspan(2 * n, n)};
+    EnvelopeLack envelope(400);
+    envelope.set_points(cells.cells(), points, static_cast<float>(kSigma));
+    double whole = 0.0, outside = 0.0;
+    for (const FeltCells::Cell& cell : cells.cells()) {
+      const Vec2 at(cell.x, cell.y);
+      double least = 1e300, rendered = 0.0;
+      for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t j = points.next(i);
+        const Vec2 from(points.x[i], points.y[i]), to(points.x[j], points.y[j]);
+        const double t =
+            std::clamp((at - from).dot(to - from) / (to - from).squaredNorm(), 0.0, 1.0);
+        const double square = (at - from - t * (to - from)).squaredNorm();
+        if (square >= least) continue;
+        least = square;
+        rendered =
+            ((1.0 - t) * static_cast<double>(pressure[i]) + t * static_cast<double>(pressure[j])) *
+            std::exp(-0.5 * square / (kSigma * kSigma));
+      }
+      whole += cell.area * rendered;
+      if (cell.pressure < 0.1) outside += cell.area * rendered;
+    }
+    ASSERT_GT(outside, 0.0);
+    EXPECT_NEAR(static_cast<double>(envelope.spill(cells.cells(), pressure)), outside / whole, 1e-4)
+        << seed;
+  }
 }
 
 TEST(FeltProblem, HasTheGradientOfItsCost) {

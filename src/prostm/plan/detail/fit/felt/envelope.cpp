@@ -7,6 +7,7 @@
 namespace prostm::planning {
 namespace {
 
+constexpr double kSpillBelow = 0.1;   // of the target's maximum, as in Metrics::spill
 constexpr float kLeastField = 1e-6F;  // keeps the field above 0 where no path is in reach
 
 /// A segment from one point to the next.
@@ -87,6 +88,19 @@ float EnvelopeLack::evaluate(RenderLack<float>& rendering, std::span<const float
     field[c] = kLeastField + at.a * pressure[at.first] + at.b * pressure[at.second];
   }
   return rendering.of(field, 0.0F, pull_.head(n));
+}
+
+float EnvelopeLack::spill(const std::vector<FeltCells::Cell>& cells,
+                          std::span<const float> pressure) const {
+  float all = 0.0F, outside = 0.0F;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const Nearest& at = nearest_[c];
+    const float field = static_cast<float>(cells[c].area) *
+                        (at.a * pressure[at.first] + at.b * pressure[at.second]);
+    all += field;
+    if (cells[c].pressure < kSpillBelow) outside += field;
+  }
+  return all > 0.0F ? outside / all : 0.0F;
 }
 
 void EnvelopeLack::add_gradient(float weight, std::span<float> gradient) const {

@@ -32,6 +32,9 @@ class EnvelopeLack {
   void set_points(const std::vector<FeltCells::Cell>& cells, const StepPoints& points, float sigma);
   /// Returns 1 − S_8.5 of (P10). @param rendering compares with the target in the cells.
   float evaluate(RenderLack<float>& rendering, std::span<const float> pressure);
+  /// Returns the spill: the share of the field where the target is below a tenth of its maximum.
+  /// @param cells those of set_points().
+  float spill(const std::vector<FeltCells::Cell>& cells, std::span<const float> pressure) const;
   /// Adds `weight` times the gradient of the last evaluate() with respect to the pressures.
   void add_gradient(float weight, std::span<float> gradient) const;
   /// Adds `weight` times the gradient of the last evaluate() with respect to the points [1/mm].

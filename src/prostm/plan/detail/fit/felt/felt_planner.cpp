@@ -19,10 +19,11 @@ constexpr FeltEffort kMoving = {25, 0.5F}, kMoved = {12, 0.5F};
 constexpr FeltEffort kMovingOn = {8, 0.3F}, kMovedOn = {6, 0.5F};
 constexpr FeltEffort kBriefly = {6, 0.3F};  // each of them within a short budget
 constexpr double kFirst = 2e-3;             // assumed time of the first plan of a candidate [s]
-constexpr int kRefiningRounds = 4;          // of moving points and mending paths
-constexpr int kFollowingRounds = 2;         // the same for a plan that continues the last one
-constexpr int kPlansPerRival = 3;           // plans of a sequence for each comparison
-constexpr float kHysteresis = 0.04F;        // cost that another candidate must save
+constexpr float kSpillWeight = 1.5F, kSpillAllowed = 0.06F;  // of the spill in (P25)
+constexpr int kRefiningRounds = 4;                           // of moving points and mending paths
+constexpr int kFollowingRounds = 2;   // the same for a plan that continues the last one
+constexpr int kPlansPerRival = 3;     // plans of a sequence for each comparison
+constexpr float kHysteresis = 0.04F;  // cost that another candidate must save
 constexpr float kCountChange =
     0.02F;  // the same for another number of paths, when all are made anew
 
@@ -116,7 +117,8 @@ void FeltPlanner::reset() {
 /// Returns (P25), as felt on the cells and skins of `step`.
 float FeltPlanner::cost(Candidate& candidate, FeltStep& step) {
   const FeltRating rating = candidate.fit->rate(step);
-  return rating.lack - static_cast<float>(settings_.strength_weight) * std::log(rating.strength);
+  return rating.lack + kSpillWeight * std::max(0.0F, rating.spill - kSpillAllowed) -
+         static_cast<float>(settings_.strength_weight) * std::log(rating.strength);
 }
 
 /// Returns the cost of changing the number of paths to that of a candidate.

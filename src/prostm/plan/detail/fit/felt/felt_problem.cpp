@@ -87,10 +87,12 @@ float FeltProblem::add_envelope(float felt) {
   return weight_ * felt + (1.0F - weight_) * envelope_.evaluate(loss_.rendering(), pressure_);
 }
 
-FeltRating FeltProblem::rating() const {
+FeltRating FeltProblem::rating() {
+  envelope_.set_points(cells_.cells(), points_, static_cast<float>(kMmPerMetre * sigma_));
   const std::span<const float> percept = loss_.percept(kNominalSkin);
   const float strength = *std::max_element(percept.begin(), percept.end());
-  return {loss_.coarse_lack(), paths_.size() > 1 ? kSharedOutput * strength : strength};
+  return {loss_.coarse_lack(), paths_.size() > 1 ? kSharedOutput * strength : strength,
+          envelope_.spill(cells_.cells(), pressure_)};
 }
 
 float FeltProblem::evaluate(std::span<const float> root) {

@@ -21,6 +21,7 @@ namespace prostm::planning {
 struct FeltRating {
   float lack = 0.0F;      ///< 1 − S_8.5 of √e, the mean over the skins
   float strength = 0.0F;  ///< largest √e on the nominal skin over the output (P20) [µm per unit]
+  float spill = 0.0F;     ///< of the field of Eq. (1)
 };
 
 /// The cells and skins on which plans are felt.
@@ -66,7 +67,7 @@ class FeltProblem {
   };
   Loudness loudness() const { return {loss_.loudness() * output_, output_}; }
   /// Returns how the last evaluate() is felt.
-  FeltRating rating() const;
+  FeltRating rating();
   /// Area of the skin times mean p*² [mm²]: the scale of (P11).
   float square() const { return square_; }
 
