@@ -33,6 +33,10 @@ class Mute {
   bool on(MuteReason reason) const noexcept {
     return (reasons_.load(std::memory_order_acquire) & static_cast<std::uint32_t>(reason)) != 0;
   }
+  /// Whether it is on for any other reason than this one.
+  bool on_besides(MuteReason reason) const noexcept {
+    return (reasons_.load(std::memory_order_acquire) & ~static_cast<std::uint32_t>(reason)) != 0;
+  }
 
  private:
   std::atomic<std::uint32_t> reasons_{0};

@@ -15,10 +15,10 @@ namespace prostm::methods {
 
 /// The compared ways. BestNarrow is Best planned with the width of the array's own focus, like
 /// Felt. AmFelt optimises the percept of AM's foci, with the σ that suits it best, and chooses
-/// their number for each target by (P25). Circle is a single circle about the centre of mass; its
-/// radius is the pressure's mean distance from there. RandomCircles are placed without regard to
-/// the target, and get its least-squares pressures. All others use the paper's σ. Flat needs no
-/// array: the same pressure on all skin, modulated as in AM.
+/// their number for each target by (P25) without spill. Circle is a single circle about the centre
+/// of mass; its radius is the pressure's mean distance from there. RandomCircles are placed without
+/// regard to the target, and get its least-squares pressures. All others use the paper's σ. Flat
+/// needs no array: the same pressure on all skin, modulated as in AM.
 enum class Way {
   PaperValid,
   Best,

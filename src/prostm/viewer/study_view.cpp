@@ -261,7 +261,9 @@ Json StudyView::experimenter() const {
   Json json = both("experimenter");
   json["participant"] = session_.participant();
   json["blind"] = p.study.blind;
-  json["output"] = !link_.mute->on();
+  // in a blind study a catch trial looks like any other
+  const bool hides = p.study.blind && session_.presents_nothing();
+  json["output"] = hides ? !link_.mute->on_besides(MuteReason::Study) : !link_.mute->on();
   json["waits_for"] = session_.waits_for();
   json["needs"] = session_.page_problem();
   json["bound"] = session_.at_bound();

@@ -242,7 +242,7 @@ TEST(ExtraTrials, EachMethodIsPractised) {
   std::vector<std::string> kinds;
   while (s.present()) {
     kinds.emplace_back(s.session.extra() ? "practice" : "trial");
-    if (s.session.extra()) EXPECT_EQ(s.session.trial().method, s.session.course().trial().method);
+    EXPECT_EQ(s.session.trial().method, s.session.course().trial().method);
     s.answer(1);
   }
   const std::vector<std::string> block = {"practice", "practice", "trial", "trial"};
@@ -260,6 +260,7 @@ TEST(ExtraTrials, ACatchTrialIsSilentAndLooksLikeAnyOther) {
   while (s.present()) {
     const bool is_catch = s.session.extra().has_value();
     EXPECT_EQ(s.session.wanted().sound, !is_catch);
+    EXPECT_EQ(s.session.presents_nothing(), is_catch);
     EXPECT_GE(s.session.wanted().scene, 0) << "the smoke develops, too";
     EXPECT_FALSE(s.session.question().empty());
     EXPECT_EQ(s.session.practice_trial(), 0);

@@ -95,6 +95,8 @@ class StudySession {
   const Trial& trial() const { return extra_ ? extra_->trial : course_.trial(); }
   /// Set while the trial is not one of the course.
   const std::optional<ExtraTrial>& extra() const { return extra_; }
+  /// Whether a catch trial stands for a stimulus now.
+  bool presents_nothing() const;
   /// The number of the current or next practice trial, from 1; 0 if none follows.
   int practice_trial() const;
   /// A sentence about a practice that ended without its criterion; empty after the next act.

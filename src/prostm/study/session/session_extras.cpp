@@ -16,6 +16,11 @@ int StudySession::practice_trial() const {
   return extras_.practice().trials() + 1;
 }
 
+bool StudySession::presents_nothing() const {
+  return phase_ == StudyPhase::Presenting && intervals_.is_playing() && extra_ &&
+         extra_->kind == ExtraKind::Catch;
+}
+
 std::string StudySession::question() const {
   if (extra_ && extra_->kind == ExtraKind::Attention) return extras_.instruction(*extra_);
   return protocol_.scenes[static_cast<std::size_t>(trial().question)].question;
