@@ -1,7 +1,8 @@
 /// The program under test, a recording for it, and pages of it.
 
-import { spawn, type ChildProcess } from "node:child_process";
+import { spawn, type ChildProcess, type ChildProcessByStdio } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import type { Readable } from "node:stream";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium, type Browser, type Page } from "playwright-core";
@@ -27,6 +28,15 @@ export function writeRecording(seconds: number): string {
   return file;
 }
 
+const programs: ChildProcess[] = [];
+
+/// Starts the program under test. clean() ends it if a test has failed before it did.
+export function spawnProgram(args: string[]): ChildProcessByStdio<null, Readable, Readable> {
+  const child = spawn(kProgram, args, { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+  programs.push(child);
+  return child;
+}
+
 export class Program {
   address = "";
   private output = "";
@@ -36,7 +46,7 @@ export class Program {
 
   /// Starts the program, and waits until it prints the page's address.
   async start(port = 0): Promise<void> {
-    const child = spawn(kProgram, ["run", "--view", "--view-port", String(port), ...this.options], { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+    const child = spawnProgram(["run", "--view", "--view-port", String(port), ...this.options]);
     this.child = child;
     this.output = "";
     this.address = await new Promise((resolve, reject) => {
@@ -70,7 +80,11 @@ export class Program {
 }
 export type Json = Record<string, unknown>;
 
-export function clean(): void { rmSync(folder, { recursive: true, force: true }); }
+/// Ends programs that still run, and removes the folder of the tests.
+export function clean(): void {
+  for (const child of programs) if (child.exitCode === null && child.signalCode === null) child.kill("SIGKILL");
+  rmSync(folder, { recursive: true, force: true });
+}
 
 export async function openBrowser(): Promise<Browser> {
   if (!existsSync(kProgram)) throw new Error(`PROSTM names no program: "${kProgram}"`);

@@ -1,10 +1,10 @@
 /// Runs prostm study run for tests.
 
-import { spawn, type ChildProcess } from "node:child_process";
+import type { ChildProcess } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Page } from "playwright-core";
-import { folder, kProgram, type Json } from "./program";
+import { folder, spawnProgram, type Json } from "./program";
 
 /// A study with short trials and a hand that is not tracked.
 export function protocol(more: string): string {
@@ -32,7 +32,7 @@ export class Study {
 
   async start(...options: string[]): Promise<void> {
     const all = ["study", "run", this.protocol, "--participant", String(this.participant), "--answers", this.answers, "--view-port", "0", ...options];
-    const child = spawn(kProgram, all, { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+    const child = spawnProgram(all);
     this.child = child;
     this.printed = "";
     await new Promise<void>((resolve, reject) => {
