@@ -18,7 +18,6 @@ namespace {
 using testing::HasSubstr;
 using Do = StudyAct::Do;
 
-const nlohmann::ordered_json kFacts = {{"prostm", "test"}, {"rehearsal", false}};
 const std::string kShort = "[training]\nseconds = 0\n[trials]\nrest = 0.1\nsettle = 0.5\n";
 const std::string kScene = "[scene.one-plume]\nquestion = \"Stronger?\"\n";
 const std::string kLinear = "setting = \"plan.speed\"\nlow = 2\nhigh = 8\nstep = 0.3\n";
@@ -35,7 +34,7 @@ const std::string kForced = "task = \"forced-choice\"\n", kJudged = "task = \"ju
 /// A session in a run that obeys at once.
 struct Sitting {
   Sitting(const Protocol& p, const std::string& path, double step = 0.1)
-      : step_(step), protocol(p), file(path), session(protocol, 1, file, kFacts, sight) {}
+      : step_(step), protocol(p), file(path), session(protocol, 1, file, test::kFacts, sight) {}
 
   void pass() {
     sight.time += step_;

@@ -16,7 +16,6 @@ namespace {
 using testing::HasSubstr;
 using Do = StudyAct::Do;
 
-const nlohmann::ordered_json kFacts = {{"prostm", "test"}, {"rehearsal", false}};
 const ParticipantPage kFull{true, PageReport{true, PageNoise::Playing, true}};
 const std::string kNoise = "[training]\nseconds = 0\n[trials]\nnoise = true\n";
 
@@ -25,7 +24,7 @@ struct Sitting {
   Sitting(const std::string& protocol_text, const ParticipantPage& page)
       : protocol(test::study_protocol(protocol_text)),
         file(folder.file("1.jsonl")),
-        session(protocol, 1, file, kFacts, sight) {
+        session(protocol, 1, file, test::kFacts, sight) {
     sight.page = page;
     pass();
   }

@@ -18,7 +18,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using Do = StudyAct::Do;
 
-const nlohmann::ordered_json kFacts = {{"prostm", "test"}, {"rehearsal", false}};
 const std::string kShort =
     "participants = 4\n[training]\nseconds = 0\n[trials]\nrepeats = 1\nrest = 0.1\nsettle = 0.5\n";
 
@@ -28,7 +27,7 @@ std::vector<Trial> write_participant(const Protocol& protocol, const std::string
                                      const std::optional<Replacement>& replaces = {}) {
   StudySight sight = test::sight_at(100.0);
   ResponseFile file(path);
-  StudySession session(protocol, number, file, kFacts, sight, replaces);
+  StudySession session(protocol, number, file, test::kFacts, sight, replaces);
   std::vector<Trial> trials;
   for (int i = 0; i < answers; ++i) {
     trials.push_back(session.trial());

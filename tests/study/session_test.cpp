@@ -17,12 +17,10 @@ namespace {
 using testing::HasSubstr;
 using Do = StudyAct::Do;
 
-const nlohmann::ordered_json kFacts = {{"prostm", "test"}, {"rehearsal", false}};
-
 /// A session with its file, in a run that obeys at once.
 struct Sitting {
   Sitting(const Protocol& p, const std::string& path, int participant = 1)
-      : protocol(p), file(path), session(protocol, participant, file, kFacts, sight) {}
+      : protocol(p), file(path), session(protocol, participant, file, test::kFacts, sight) {}
 
   /// Lets time pass in steps of 50 ms until a condition holds.
   bool until(const std::function<bool()>& done, double seconds = 30.0) {

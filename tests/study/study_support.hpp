@@ -1,12 +1,16 @@
 #pragma once
 /// A protocol and a stand-in for a run, for tests of studies.
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "prostm/study/session/session.hpp"
 #include "prostm/study/task/protocol_file.hpp"
 
 namespace prostm::test {
+
+/// Facts about the run, for the first line of a participant's file.
+inline const nlohmann::ordered_json kFacts = {{"prostm", "test"}, {"rehearsal", false}};
 
 inline Protocol study_protocol(const std::string& more = "", const std::string& methods =
                                                                  "[method.am.pipeline]\n"

@@ -18,7 +18,6 @@ namespace {
 using testing::HasSubstr;
 using Do = StudyAct::Do;
 
-const nlohmann::ordered_json kFacts = {{"prostm", "test"}, {"rehearsal", false}};
 const std::string kShort = "[training]\nseconds = 0\n[trials]\nrest = 0.1\nsettle = 0.5\n";
 const std::string kLevels =
     "[level]\nsetting = \"plan.speed\"\nlow = 2\nhigh = 8\nstep = 0.3\nreversals = 4\n";
@@ -33,7 +32,7 @@ Protocol with_levels(const std::string& task, const std::string& more = "",
 /// A session in a run that obeys at once.
 struct Sitting {
   Sitting(const Protocol& p, const std::string& path, int participant = 1)
-      : protocol(p), file(path), session(protocol, participant, file, kFacts, sight) {}
+      : protocol(p), file(path), session(protocol, participant, file, test::kFacts, sight) {}
 
   void pass(double seconds = 0.1) {
     sight.time += seconds;

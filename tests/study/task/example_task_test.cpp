@@ -22,7 +22,6 @@ namespace {
 using testing::HasSubstr;
 using Do = StudyAct::Do;
 
-const nlohmann::ordered_json kFacts = {{"prostm", "test"}, {"rehearsal", false}};
 const std::string kText =
     "[training]\nseconds = 0\n"
     "[trials]\ntask = \"odd-one-out\"\nrest = 0.1\nsettle = 0.5\nfeedback = true\n"
@@ -37,7 +36,7 @@ Protocol odd_protocol() {
 /// A session in a run that obeys at once.
 struct Sitting {
   explicit Sitting(const std::string& path)
-      : protocol(odd_protocol()), file(path), session(protocol, 1, file, kFacts, sight) {}
+      : protocol(odd_protocol()), file(path), session(protocol, 1, file, test::kFacts, sight) {}
 
   void pass() {
     sight.time += 0.1;
