@@ -84,7 +84,10 @@ find("go").addEventListener("click", () => {
   leave.close();
   page.act({ type: "study", do: "withdraw" });
 });
-find("train-on").addEventListener("click", () => ending.close());
+find("train-on").addEventListener("click", () => {
+  ending.close();
+  find("train-on").blur(); // the closed dialog's button keeps the focus until the next frame, and would take a key
+});
 find("end-training").addEventListener("click", () => {
   ending.close();
   page.act({ type: "study", do: "end-training" });
