@@ -5,7 +5,6 @@ import random
 import socket
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -97,11 +96,3 @@ def shared_file(name):
     if not path.exists():
         pytest.skip(f"needs {name} in ../shared, which is not part of the project")
     return path
-
-
-def wait_for(condition):
-    for _ in range(600):
-        if condition():
-            return
-        time.sleep(0.1)
-    raise AssertionError("it did not happen within a minute")

@@ -10,7 +10,7 @@ import time
 import h5py
 import pytest
 
-from conftest import wait_for
+from waiting import wait_for
 from test_commands import blob_field
 
 

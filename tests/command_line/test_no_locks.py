@@ -9,7 +9,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from conftest import wait_for
+from waiting import wait_for
 from conftest import SHORT
 from test_study import STUDY
 

@@ -14,7 +14,8 @@ import time
 
 import pytest
 
-from conftest import ROOT, free_port, wait_for
+from conftest import ROOT, free_port
+from waiting import wait_for
 
 SMALL = ["run", "--grid", "32"]
 

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import wait_for
+from waiting import wait_for
 
 
 def soak(program, folder, *arguments, minutes="0.1"):

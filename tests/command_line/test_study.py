@@ -15,7 +15,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from conftest import ROOT, SHORT, shared_file, wait_for
+from conftest import ROOT, SHORT, shared_file
+from waiting import wait_for
 
 MADE_UP = ROOT / "data" / "made-up-answers.csv"
 SVG = "{http://www.w3.org/2000/svg}"

@@ -9,7 +9,8 @@ import urllib.request
 
 import pytest
 
-from conftest import wait_for
+from page_client import numbers, page_says
+from waiting import wait_for
 
 
 def start(program, folder, *arguments, port="0"):
@@ -28,11 +29,6 @@ def end(process):
     process.send_signal(signal.SIGINT)
     out, _ = process.communicate(timeout=60)
     return process.returncode, out
-
-
-def numbers(address):
-    with urllib.request.urlopen(address + "numbers.json", timeout=60) as answer:
-        return json.load(answer)
 
 
 @pytest.mark.parametrize("arguments, words", [
@@ -80,18 +76,6 @@ def test_an_undisturbed_run_ends_completely(program, tmp_path):
     assert process.returncode == 143 and errors == ""
     assert "no picture was drawn in run.png: no pressure reached a hand" in out
     assert json.loads((tmp_path / "summary.json").read_text())["stopped"] is True
-
-
-def page_says(address, message):
-    """Connects as a page and sends a message; closing the returned socket closes the page."""
-    port = int(address.rstrip("/").rsplit(":", 1)[1])
-    page = socket.create_connection(("127.0.0.1", port), timeout=60)
-    page.sendall(f"GET /live HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-                 "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n".encode())
-    assert page.recv(64).startswith(b"HTTP/1.1 101")
-    text = json.dumps(message).encode()
-    page.sendall(bytes([0x81, 0x80 | len(text), 0, 0, 0, 0]) + text)
-    return page
 
 
 def test_a_run_paused_by_a_page_that_left_ends(program, tmp_path):

@@ -34,13 +34,19 @@ def field():
 
 
 @pytest.fixture(scope="session")
-def program():
-    """Returns a function that runs `prostm ARGUMENTS…` with the program in the environment variable PROSTM."""
+def program_file():
+    """Returns the path of the program in the environment variable PROSTM."""
     path = Path(os.environ.get("PROSTM", ROOT / "build" / "release" / "prostm"))
     assert path.is_file(), f"PROSTM names no program: {path}"
+    return path
+
+
+@pytest.fixture(scope="session")
+def program(program_file):
+    """Returns a function that runs `prostm ARGUMENTS…`."""
 
     def run(*arguments, status=0):
-        result = subprocess.run([str(path), *map(str, arguments)], text=True, capture_output=True, timeout=300,
+        result = subprocess.run([str(program_file), *map(str, arguments)], text=True, capture_output=True, timeout=300,
                                 stdin=subprocess.DEVNULL)
         assert result.returncode == status, result.stderr
         return result

@@ -11,7 +11,8 @@ import time
 import numpy as np
 import pytest
 
-from conftest import ROOT, free_port, wait_for
+from conftest import ROOT, free_port
+from waiting import wait_for
 
 STEP = 8.0 / 40e3  # largest step of an active focal point between samples [m]
 CHANGE = 1.0 / 40.0  # largest change of an intensity between samples
