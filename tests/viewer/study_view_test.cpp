@@ -182,6 +182,26 @@ Json state_with(Page& page, const std::function<bool(const Json&)>& holds) {
   }
 }
 
+TEST(StudyView, NamesNoConditionInACatchTrial) {
+  LiveStudy study(
+      "methods = \"within\"\nblind = false\n[training]\nseconds = 0\n[trials]\nrepeats = "
+      "1\nrest = 0.1\nsettle = 0.5\ngate = \"off\"\ncatch_every = 2\n");
+  Page experimenter(study.port()), participant(study.port(), "", "", "/guest/live");
+  at_phase(experimenter, "ready");
+  experimenter.say(R"({"type":"study","do":"next"})");
+  std::size_t unnamed = 0;
+  for (int presented = 1; presented <= 3; ++presented) {
+    const Json state = at_phase(experimenter, "presenting", [&] { participant.say(kReport); });
+    if (state.at("condition").is_null()) ++unnamed;
+    experimenter.say(R"({"type":"study","do":"answer","yes":true})");
+    state_with(experimenter, [&](const Json& next) { return next.at("phase") != "presenting"; });
+    EXPECT_EQ(presented - study.trials().size(), unnamed)
+        << "answers to catch trials are not results";
+    experimenter.say(R"({"type":"study","do":"next"})");
+  }
+  EXPECT_EQ(unnamed, 1U);
+}
+
 TEST(StudyView, HoldsTrialsUntilThePageReportsTheNoise) {
   LiveStudy study(
       "[training]\nseconds = 0\n[trials]\nnoise = true\nrest = 0.1\nsettle = 0.5\ngate = "

@@ -279,7 +279,7 @@ Json StudyView::experimenter() const {
   const Trial& trial = session_.trial();
   if (phase == StudyPhase::Settling || phase == StudyPhase::Presenting)
     json["question"] = session_.question();
-  if (!p.study.blind) {
+  if (!p.study.blind && !session_.presents_nothing()) {
     json["condition"] = {{"method", p.methods[static_cast<std::size_t>(trial.method)].name},
                          {"scene", p.scenes[static_cast<std::size_t>(trial.scene)].name}};
     if (trial.level) json["condition"]["level"] = *trial.level;

@@ -52,7 +52,8 @@ Trial ExtraTrials::drawn(Random& random, const Trial& next) const {
 std::optional<ExtraTrial> ExtraTrials::next(std::size_t done, const Trial& next) const {
   if (practises()) {
     const auto index = static_cast<std::size_t>(practice_.trials());
-    Random random = random_of(ExtraKind::Practice, 1000 * done + index);
+    constexpr std::size_t kMostPractice = 1000;  // trials that draw from streams of their own
+    Random random = random_of(ExtraKind::Practice, kMostPractice * done + index);
     return ExtraTrial{ExtraKind::Practice, drawn(random, next)};
   }
   const std::vector<int> answers = protocol_.trials.task->answers();
