@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prostm/acoustics/skin/sensation_level.hpp"
 #include "prostm/fields/fields.hpp"
 #include "prostm/methods/comparison.hpp"
+#include "prostm/score/plan_percept.hpp"
 #include "support/load.hpp"
 
 namespace prostm::methods {
@@ -34,6 +36,21 @@ TEST(Rendering, ControlsEqualiseTheStatedQuantity) {
     if (field.skin[c] == 0) {
       EXPECT_EQ(best.felt.percept[c], 0.0);
     }
+  }
+}
+
+/// `prostm plan`, `prostm field`, runs and pages give the numbers of plan_percept().
+TEST(Rendering, ShapeAndStrengthAreThoseOfEveryCommand) {
+  TargetFrame frame;
+  frame.patches.push_back(target());
+  Renderer renderer(usx_array(), frame.patches[0]);
+  WorkerPool pool(1);
+  for (const Way way : {Way::PaperValid, Way::Best, Way::Felt, Way::Am}) {
+    SCOPED_TRACE(to_string(way));
+    const Rendering r = renderer.render(way, frame.patches[0]);
+    const PlanPercept percept = plan_percept(r.plan, frame, 0, {}, 40e3, usx_array(), pool);
+    EXPECT_DOUBLE_EQ(r.of_felt.skill_8, percept.skill);
+    EXPECT_NEAR(sensation_level(r.felt.largest, usx_array()), percept.sensation_level, 0.01);
   }
 }
 

@@ -75,10 +75,10 @@ void add_tables(const AllMeans& means, Json& blocks) {
       "Eq. (1), of the envelope (the highest radiation pressure that the array puts on each cell), "
       "and of the percept, all after the gain of least squares",
       {{"way", "way"},
-       {"shape", "shape by Eq. (1)", "", 2},
+       {"shape", at_common_width("shape by Eq. (1)"), "", 2},
        {"felt_shape", "felt shape", "", 2},
        {"felt_strength", "felt strength", "dB above threshold", 1},
-       {"spill", "spill"},
+       {"spill", at_common_width("spill")},
        {"rmse", "RMSE by Eq. (1)"},
        {"correlation", "correlation by Eq. (1)"},
        {"model_overlap", "overlap by Eq. (1)"},

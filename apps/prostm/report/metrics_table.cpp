@@ -1,18 +1,28 @@
 #include "report/metrics_table.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "prostm/acoustics/skin/sensation_level.hpp"
+#include "prostm/plan/plan_settings.hpp"
 
 namespace prostm::app {
 
+std::string at_common_width(const std::string& quantity) {
+  return fmt::format("{} at σ = {:.1f} mm", quantity, 1e3 * PlanSettings().sigma);
+}
+
 std::vector<report::Column> metrics_columns(const std::string& heading, bool felt) {
-  std::vector<report::Column> out = {{"name", heading}, {"shape", "shape by Eq. (1)", "", 2}};
+  const auto name = [&](const char* quantity) {
+    return felt ? at_common_width(quantity) : std::string(quantity);
+  };
+  std::vector<report::Column> out = {{"name", heading}, {"shape", name("shape by Eq. (1)"), "", 2}};
   if (felt) {
     out.push_back({"felt_shape", "felt shape", "", 2});
     out.push_back({"felt_strength", "felt strength", "dB above threshold", 1});
   }
-  for (const report::Column& column : {report::Column{"spill", "spill"},
+  for (const report::Column& column : {report::Column{"spill", name("spill")},
                                        {"rmse", "RMSE by Eq. (1)"},
                                        {"correlation", "correlation by Eq. (1)"},
                                        {"skill_8", "S_8.5 by Eq. (1)"},

@@ -10,7 +10,11 @@
 
 namespace prostm::app {
 
-/// @param heading of the first column. @param felt whether there are columns of the percept.
+/// Names a quantity by Eq. (1) that is computed with the paper's σ for all methods. Commands use
+/// the σ that each plan was made for.
+std::string at_common_width(const std::string& quantity);
+/// @param heading of the first column. @param felt whether there are columns of the percept; then
+/// shape and spill have the names of at_common_width().
 std::vector<report::Column> metrics_columns(const std::string& heading, bool felt = false);
 /// @param of_model metrics by Eq. (1). @param of_percept metrics of the percept, if computed.
 /// @param percept its strongest place, with the array usx at its nominal amplitude [m].

@@ -11,6 +11,7 @@
 #include "prostm/core/units.hpp"
 #include "prostm/emit/loop_samples.hpp"
 #include "prostm/plan/planner.hpp"
+#include "prostm/score/plan_percept.hpp"
 
 namespace prostm::methods {
 namespace {
@@ -72,25 +73,6 @@ Plan plan_by(Way way, const TargetField& target, double focus_width, Random& ran
       break;
   }
   return {};
-}
-
-/// Returns the samples of a plan's loop, with full scale at the plan's largest pressure.
-LoopSamples loop_of(const Plan& plan, const TargetField& target) {
-  TargetFrame frame;
-  frame.patches.push_back(target);
-  LiftedPlan lifted;
-  lift(plan, frame, lifted);
-  EmitSettings settings;
-  settings.foci = static_cast<int>(lifted.paths.size() + lifted.foci.size());
-  for (const LiftedPath& path : lifted.paths) {
-    for (const double p : path.pressure) {
-      settings.full_scale_pressure = std::max(settings.full_scale_pressure, p);
-    }
-  }
-  for (const LiftedFocus& focus : lifted.foci) {
-    settings.full_scale_pressure = std::max(settings.full_scale_pressure, focus.pressure);
-  }
-  return loop_samples(lifted, settings, kRate);
 }
 
 /// Returns the pressure of the flat field: 1 Pa on all skin at the peak of the modulation, whose
@@ -157,7 +139,9 @@ struct Renderer::Parts {
 
 /// Computes the field of the array on the skin, and the skin's response.
 void Renderer::Parts::play(const TargetField& target, Rendering& out) {
-  const LoopSamples loop = loop_of(out.plan, target);
+  TargetFrame frame;
+  frame.patches.push_back(target);
+  const LoopSamples loop = plan_loop(out.plan, frame, {}, kRate);
   out.felt_at_all = is_felt(target, loop);
   if (!out.felt_at_all) return;
   LoopDriveResult drives;
